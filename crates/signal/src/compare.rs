@@ -148,7 +148,7 @@ fn one_motion(
     measured.force_delay = Some(delay);
     measured.force_delay_sd = Some(sd);
     measured.motion_misfit = Some(found.misfit);
-    measured.motion_misfit_sd = Some(found.noise);
+    measured.motion_noise = Some(found.noise);
     if delay.abs() > (CLEAR * sd).max(LATE * place.duration()) {
         findings.push(Finding::LateChannel {
             force: force.name.clone(),

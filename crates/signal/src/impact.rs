@@ -66,8 +66,8 @@ pub struct Measured {
     pub force_delay: Option<f64>,
     /// Root mean square between the displacement and the twice integrated force; m.
     pub motion_misfit: Option<f64>,
-    /// What the noise of the displacement, or its steps, leaves of that misfit; m.
-    pub motion_misfit_sd: Option<f64>,
+    /// The part of that misfit that the noise of the displacement, or its steps, explains; m.
+    pub motion_noise: Option<f64>,
     /// Standard uncertainty of the gain, from scatter; 1.
     pub force_gain_sd: Option<f64>,
     /// Standard uncertainty of the delay, from scatter; s.

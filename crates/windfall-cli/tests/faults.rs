@@ -288,7 +288,7 @@ fn reference_a_coarse_encoder_takes_no_impact_out() {
     assert_eq!(impacts.len(), 6);
     for impact in impacts {
         assert_eq!(impact["left_out"], Value::Array(vec![]), "{}", impact["id"]);
-        let noise = impact["derived_sd"]["motion_misfit"].as_f64().unwrap();
+        let noise = impact["derived"]["motion_noise"].as_f64().unwrap();
         assert!(noise > 2e-5, "{noise}");
     }
 }

@@ -128,8 +128,8 @@ fn pinned_numbers_are_those_of_the_revision() {
     let expected = (
         6,
         [
-            "5a0aa323de63b000",
-            "e28d55e7a66a5d65",
+            "ab1030ef5e762684",
+            "5b7f69fedcc30b1b",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

@@ -168,106 +168,114 @@ fn signal(impact: &ImpactOutcome, name: &str) -> Option<(f64, f64)> {
 }
 
 /// What physics excludes.
-fn impossible(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
-    let mut reasons = Vec::new();
-    let mut tell = |code: &str, told: String| reasons.push(FindingOutcome::new(code, told));
-    if let Some((e, sd)) = signal(impact, "restitution") {
-        let room = (DEVIATIONS * sd).max(SLACK);
-        if e > 1.0 + room || e < -room {
-            tell(
-                "impossible-restitution",
-                format!(
-                    "the restitution is {e:.3} ± {sd:.3}, and it lies between 0 and 1: the velocity \
-                     before or after contact is wrong, as by a drift, a glitch or a false trigger"
-                ),
-            );
-        }
-    }
-    if let (Some((lost, sd)), Some((before, _))) = (
-        signal(impact, "absorbed_energy"),
-        signal(impact, "impact_energy"),
-    ) && lost < -(DEVIATIONS * sd).max(SLACK * before)
-    {
+fn impossible(impact: &ImpactOutcome, rig: &Rig) -> impl Iterator<Item = FindingOutcome> {
+    [
+        restitution_outside(impact),
+        energy_gained(impact),
+        impulse_unbalanced(impact, rig),
+        force_late_or_scaled(impact),
+        two_motions(impact),
+        velocity_beyond(impact, rig),
+    ]
+    .into_iter()
+    .flatten()
+}
+
+fn restitution_outside(impact: &ImpactOutcome) -> Option<FindingOutcome> {
+    let (e, sd) = signal(impact, "restitution")?;
+    let room = (DEVIATIONS * sd).max(SLACK);
+    (e > 1.0 + room || e < -room).then(|| {
+        let told = format!(
+            "the restitution is {e:.3} ± {sd:.3}, and it lies between 0 and 1: the velocity before \
+             or after contact is wrong, as by a drift, a glitch or a false trigger"
+        );
+        FindingOutcome::new("impossible-restitution", told)
+    })
+}
+
+fn energy_gained(impact: &ImpactOutcome) -> Option<FindingOutcome> {
+    let (lost, sd) = signal(impact, "absorbed_energy")?;
+    let (before, _) = signal(impact, "impact_energy")?;
+    (lost < -(DEVIATIONS * sd).max(SLACK * before)).then(|| {
         let told = format!(
             "the absorbed energy is {:.2} ± {:.2} mJ: fruit give no energy",
             1e3 * lost,
             1e3 * sd
         );
-        tell("negative-absorbed-energy", told);
-    }
-    let momentum = ["impact_velocity", "rebound_velocity"].map(|name| signal(impact, name));
-    if let ([Some((v1, s1)), Some((v2, s2))], Some((impulse, sd))) =
-        (momentum, signal(impact, "impulse"))
-    {
-        let mass = rig.effective_mass();
-        let driven = signal(impact, "contact_duration")
-            .map_or(0.0, |(duration, _)| rig.driving_acceleration() * duration);
-        let change = mass * (v1 + v2 + driven);
-        let room = DEVIATIONS * (sd * sd + mass * mass * (s1 * s1 + s2 * s2)).sqrt();
-        let ratio = impulse / change;
-        let off = !(1.0 / IMPULSE_RATIO..=IMPULSE_RATIO).contains(&ratio);
-        if off && (impulse - change).abs() > room {
-            tell(
-                "impulse-contradicts-momentum",
-                format!(
-                    "the force has the impulse {impulse:.4} N s where the momentum changes by \
-                     {change:.4} N s: the zero of the force, a false trigger, clipping, or a unit"
-                ),
-            );
-        }
-    }
-    if let (Some((gain, gain_sd)), Some((delay, delay_sd)), Some((duration, _))) = (
-        signal(impact, "force_gain"),
-        signal(impact, "force_delay"),
-        signal(impact, "contact_duration"),
-    ) {
-        let by_delay = SHIFT_OF_DELAY * delay.abs() / duration;
-        let by_gain = gain.ln().abs();
-        let sd = (SHIFT_OF_DELAY * delay_sd / duration).hypot(gain_sd / gain);
-        let both = delay.abs() > DEVIATIONS * delay_sd && (gain - 1.0).abs() > DEVIATIONS * gain_sd;
-        let limit = if both { SHIFT_OF_BOTH } else { SHIFT };
-        if by_delay + by_gain > (DEVIATIONS * sd).max(limit) {
-            let told = format!(
-                "by Newton's law the force is {:.0} ± {:.0} µs off the displacement ({:.1} % of the \
-                 contact) and {gain:.3} ± {gain_sd:.3} times mass × acceleration: the stiffness may be \
-                 {:.0} % off",
-                1e6 * delay,
-                1e6 * delay_sd,
-                100.0 * delay.abs() / duration,
-                100.0 * (by_delay + by_gain).exp_m1()
-            );
-            let late = by_delay > by_gain;
-            tell(
-                if late {
-                    "late-channel"
-                } else {
-                    "impulse-contradicts-momentum"
-                },
-                told,
-            );
-        }
-    }
-    if let (Some((misfit, noise)), Some((largest, _))) = (
-        signal(impact, "motion_misfit"),
-        signal(impact, "max_displacement"),
-    ) && misfit > (DEVIATIONS * noise).max(MOTION * largest)
-    {
+        FindingOutcome::new("negative-absorbed-energy", told)
+    })
+}
+
+/// ∫F dt = m (v₁ + v₂ + a T), with the driving acceleration a during the contact.
+fn impulse_unbalanced(impact: &ImpactOutcome, rig: &Rig) -> Option<FindingOutcome> {
+    let (v1, s1) = signal(impact, "impact_velocity")?;
+    let (v2, s2) = signal(impact, "rebound_velocity")?;
+    let (impulse, sd) = signal(impact, "impulse")?;
+    let mass = rig.effective_mass();
+    let driven = signal(impact, "contact_duration")
+        .map_or(0.0, |(duration, _)| rig.driving_acceleration() * duration);
+    let change = mass * (v1 + v2 + driven);
+    let room = DEVIATIONS * (sd * sd + mass * mass * (s1 * s1 + s2 * s2)).sqrt();
+    let ratio = impulse / change;
+    let off = !(1.0 / IMPULSE_RATIO..=IMPULSE_RATIO).contains(&ratio);
+    (off && (impulse - change).abs() > room).then(|| {
+        let told = format!(
+            "the force has the impulse {impulse:.4} N s where the momentum changes by {change:.4} \
+             N s: the zero of the force, a false trigger, clipping, or a unit"
+        );
+        FindingOutcome::new("impulse-contradicts-momentum", told)
+    })
+}
+
+fn force_late_or_scaled(impact: &ImpactOutcome) -> Option<FindingOutcome> {
+    let (gain, gain_sd) = signal(impact, "force_gain")?;
+    let (delay, delay_sd) = signal(impact, "force_delay")?;
+    let (duration, _) = signal(impact, "contact_duration")?;
+    let by_delay = SHIFT_OF_DELAY * delay.abs() / duration;
+    let by_gain = gain.ln().abs();
+    let sd = (SHIFT_OF_DELAY * delay_sd / duration).hypot(gain_sd / gain);
+    let both = delay.abs() > DEVIATIONS * delay_sd && (gain - 1.0).abs() > DEVIATIONS * gain_sd;
+    let limit = if both { SHIFT_OF_BOTH } else { SHIFT };
+    (by_delay + by_gain > (DEVIATIONS * sd).max(limit)).then(|| {
+        let told = format!(
+            "by Newton's law the force is {:.0} ± {:.0} µs off the displacement ({:.1} % of the \
+             contact) and {gain:.3} ± {gain_sd:.3} times mass × acceleration: the stiffness may be \
+             {:.0} % off",
+            1e6 * delay,
+            1e6 * delay_sd,
+            100.0 * delay.abs() / duration,
+            100.0 * (by_delay + by_gain).exp_m1()
+        );
+        let code = match by_delay > by_gain {
+            true => "late-channel",
+            false => "impulse-contradicts-momentum",
+        };
+        FindingOutcome::new(code, told)
+    })
+}
+
+fn two_motions(impact: &ImpactOutcome) -> Option<FindingOutcome> {
+    let (misfit, _) = signal(impact, "motion_misfit")?;
+    let (noise, _) = signal(impact, "motion_noise")?;
+    let (largest, _) = signal(impact, "max_displacement")?;
+    (misfit > (DEVIATIONS * noise).max(MOTION * largest)).then(|| {
         let told = format!(
             "the force, integrated twice, departs from the displacement by {:.1} µm, {:.1} % of the \
              largest: they are not of one motion",
             1e6 * misfit,
             100.0 * misfit / largest
         );
-        tell("motion-mismatch", told);
-    }
-    if let (Some(most), Some((v1, sd))) =
-        (rig.largest_velocity(), signal(impact, "impact_velocity"))
-        && v1 > most + (DEVIATIONS * sd).max(SLACK * most)
-    {
+        FindingOutcome::new("motion-mismatch", told)
+    })
+}
+
+fn velocity_beyond(impact: &ImpactOutcome, rig: &Rig) -> Option<FindingOutcome> {
+    let most = rig.largest_velocity()?;
+    let (v1, sd) = signal(impact, "impact_velocity")?;
+    (v1 > most + (DEVIATIONS * sd).max(SLACK * most)).then(|| {
         let told = format!("the velocity is {v1:.3} m/s, and this pendulum reaches {most:.3} m/s");
-        tell("impossible-velocity", told);
-    }
-    reasons
+        FindingOutcome::new("impossible-velocity", told)
+    })
 }
 
 /// A stiffness of which the data tell nothing.

@@ -201,7 +201,7 @@ macro_rules! signal {
 }
 
 /// Every quantity, in the order of JSON and CSV.
-pub const QUANTITIES: [Quantity; 25] = [
+pub const QUANTITIES: [Quantity; 26] = [
     quantity(
         "impact_velocity",
         ("Impact velocity", "v₁", "m/s"),
@@ -299,7 +299,12 @@ pub const QUANTITIES: [Quantity; 25] = [
     quantity(
         "motion_misfit",
         ("Misfit of the motion", "Δx F", "m"),
-        signal!(motion_misfit, |s| s.motion_misfit_sd),
+        signal!(motion_misfit, no_sd),
+    ),
+    quantity(
+        "motion_noise",
+        ("Noise of the motion", "σ Δx", "m"),
+        signal!(motion_noise, no_sd),
     ),
     quantity(
         "acceleration_impulse_ratio",

@@ -23,6 +23,7 @@ export const DERIVED: Record<string, Meaning> = {
   force_gain: { label: "Gain of the force", symbol: "F/mẍ", unit: "" },
   force_delay: { label: "Delay of the force", symbol: "τ", unit: "s" },
   motion_misfit: { label: "Misfit of the motion", symbol: "Δx F", unit: "m" },
+  motion_noise: { label: "Noise of the motion", symbol: "σ Δx", unit: "m" },
   acceleration_impulse_ratio: { label: "Impulse of force over that of acceleration", symbol: "J/mΔv", unit: "" },
   acceleration_peak_ratio: { label: "Peak of force over that of acceleration", symbol: "F/ma", unit: "" },
   integrated_displacement_error: { label: "Integrated less measured displacement, largest", symbol: "Δx", unit: "m" },
