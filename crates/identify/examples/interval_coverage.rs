@@ -102,11 +102,11 @@ fn fit(made: &Made, method: IntervalMethod, noise: NoiseModel, seed: u64) -> Opt
     let fit = fit_impact(&made.impact, &rig(), &problem, &options).ok()?;
     // What `windfall fit` leaves out of every mean: no convergence, and "undetermined".
     let k = &fit.parameters[0];
-    (fit.converged && k.sd <= UNCERTAIN * k.value).then_some(fit)
+    (fit.converged && DEVIATIONS * k.sd <= k.value).then_some(fit)
 }
 
-/// Largest standard deviation of k of a fit that counts, relative to it; 1.
-const UNCERTAIN: f64 = 0.5;
+/// Deviations by which k of a fit that counts differs from zero.
+const DEVIATIONS: f64 = 3.0;
 
 /// Free motion beside the contact, in contact durations, of the comparison with less of it.
 const SHORT_FLIGHT: f64 = 0.2;

@@ -42,8 +42,6 @@ const SHIFT_OF_BOTH: f64 = 0.10;
 /// Largest root mean square between the displacement and the twice integrated force, as a
 /// part of the largest displacement; 1.
 const MOTION: f64 = 0.04;
-/// Largest standard deviation of the stiffness, relative to it; 1.
-const UNCERTAIN: f64 = 0.5;
 /// Fewest impacts of a group with which each is compared.
 const FEWEST: usize = 8;
 /// Robust deviations from the median of its group at which an impact contradicts it.
@@ -278,11 +276,11 @@ fn velocity_beyond(impact: &ImpactOutcome, rig: &Rig) -> Option<FindingOutcome> 
     })
 }
 
-/// A stiffness of which the data tell nothing.
+/// A stiffness that the data do not tell from zero.
 fn undetermined(impact: &ImpactOutcome) -> Option<FindingOutcome> {
     let (name, estimate) = impact.parameters.0.iter().find(|(_, own)| !own.held)?;
     let sd = estimate.sd?;
-    (sd > UNCERTAIN * estimate.value.abs()).then(|| {
+    (DEVIATIONS * sd > estimate.value.abs()).then(|| {
         let told = format!(
             "{name} is {:.4e} ± {sd:.1e} {}: the signals do not determine it",
             estimate.value, estimate.unit
