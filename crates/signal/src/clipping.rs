@@ -112,20 +112,25 @@ pub fn clipping(
     })
 }
 
-/// Forces and accelerations that stand at the end of their range in a contact, as recorded.
+/// Channels that stand at the end of their range in a contact, as recorded: forces,
+/// accelerations, and positions that stop before the impactor does.
 pub(crate) fn clipped_channels(recording: &Recording, window: (f64, f64)) -> Vec<Finding> {
-    let pushed = |quantity| matches!(quantity, Quantity::Force | Quantity::Acceleration);
-    let channels = recording.channels.iter().filter(|c| pushed(c.quantity));
-    let found = channels.filter_map(|channel| {
+    let found = recording.channels.iter().filter_map(|channel| {
         let values = &channel.samples;
         let times: Vec<f64> = (0..values.len()).map(|i| channel.times.at(i)).collect();
         let first = times.partition_point(|&t| t < window.0);
         let last = times.partition_point(|&t| t <= window.1);
-        let middle = median(values)?;
         let within = values.get(first..last).filter(|own| !own.is_empty())?;
-        let largest = index_of_largest(within, |v| (v - middle).abs());
-        let negative = within[largest] < middle;
-        clipping(&channel.name, &times, values, window, negative)
+        let (rest, looked_at) = match channel.quantity {
+            Quantity::Force | Quantity::Acceleration => (median(values)?, 0..values.len()),
+            // A position is far away before contact and after it.
+            Quantity::Displacement | Quantity::Angle => (within[0], first..last),
+            _ => return None,
+        };
+        let largest = index_of_largest(within, |v| (v - rest).abs());
+        let negative = within[largest] < rest;
+        let (times, values) = (&times[looked_at.clone()], &values[looked_at]);
+        clipping(&channel.name, times, values, window, negative)
     });
     found.collect()
 }
@@ -263,6 +268,44 @@ fn longest_run(values: &[f64], within: &Range<usize>, limit: f64) -> Range<usize
 mod tests {
     use super::*;
     use crate::noise::gaussian::{noise_source, normal};
+    use crate::recording::{Channel, Times};
+
+    #[test]
+    fn recovers_a_position_that_stops_before_the_impactor() {
+        // A coarse scale and a fine one, with little noise and much; the approach reaches far
+        // below what the contact adds.
+        for (step, noise) in [(1e-6, 0.0), (1e-6, 2e-6), (1e-5, 0.0)] {
+            for (limit, found) in [(1.0, 0), (0.7e-3, 1), (0.9e-3, 1)] {
+                let mut source = noise_source(7, 0);
+                let samples = (0..4000).map(|i| {
+                    let t = f64::from(i) * 1e-5 - 0.017;
+                    let clean = match t {
+                        ..0.0 => 0.52 * t,
+                        6e-3.. => 0.52 * (6e-3 - t),
+                        _ => 1e-3 * (t / 6e-3 * std::f64::consts::PI).sin(),
+                    };
+                    let noisy = (clean + noise * normal(&mut source)).min(limit);
+                    0.4 - (noisy / step).round() * step
+                });
+                let recording = Recording {
+                    name: "pendulum".into(),
+                    channels: vec![Channel {
+                        name: "x".into(),
+                        quantity: Quantity::Displacement,
+                        times: Times::Uniform {
+                            start: -0.017,
+                            interval: 1e-5,
+                        },
+                        samples: samples.collect(),
+                    }],
+                    missing: Vec::new(),
+                    doubts: Vec::new(),
+                };
+                let told = clipped_channels(&recording, CONTACT);
+                assert_eq!(told.len(), found, "{step} {noise} {limit}: {told:?}");
+            }
+        }
+    }
 
     /// Half a sine of 30 with noise before the limit and after it, in steps of a converter.
     fn half_sine_in_noise(

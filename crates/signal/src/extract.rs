@@ -24,12 +24,15 @@ use crate::polynomial::{PolynomialFit, fit_polynomial, local_polynomial};
 use crate::rate::derived_rate;
 use crate::recording::Recording;
 use crate::track::{Signals, Track, Tracks, mean_interval};
+use crate::touch::Touch;
 use crate::trigger::scale::{index_of_largest, moving_mean};
-use crate::trigger::{Baseline, ContactChoice, Contacts};
+use crate::trigger::{Baseline, ContactChoice, Contacts, Threshold};
 use crate::uncertain::{Uncertain, sd_of_largest};
 
 /// Fewer samples in contact than this are reported.
 const FEW_SAMPLES: usize = 8;
+/// A threshold above this part of the largest force is told; 1.
+const HIGH_THRESHOLD: f64 = 0.2;
 /// Noise below this part of the largest force leaves its peak alone; 1.
 const CLEAN_PEAK: f64 = 0.01;
 /// Order of the local polynomial that a noisy peak is read from.
@@ -71,6 +74,7 @@ pub fn extract_impact(
         let acceleration = signals.acceleration.as_ref();
         add_tip_force(force, acceleration, &place, masses, &mut findings)?;
     }
+    findings.extend(high_threshold(&signals, &contacts, &place, options));
     let measured = measure(&signals, &contacts, &place, options);
     let measured = compare(measured, &signals, &place, options, &mut findings);
     let measured_rate = signals.rate.is_some();
@@ -248,6 +252,8 @@ fn measure(
     let before = velocity(signals, place, Side::Before, options).filter(|_| onset_seen);
     let after = velocity(signals, place, Side::After, options).filter(|_| end_seen);
     let rebound = after.map(|v| -v.value);
+    let touch = window.map(|w| Touch::new(contacts.threshold, w.peak, place));
+    let change = before.zip(rebound).map(|(v, r)| v.value + r);
     let impulse = signals.force.as_ref().filter(|_| whole).and_then(|track| {
         let zero_sd = offset_sd(contacts, track.persistence);
         impulse(&track.times, &track.values, track.noise, zero_sd, place)
@@ -278,6 +284,9 @@ fn measure(
         impulse: impulse.map(|j| j.0),
         impact_velocity_sd: before.map(|v| v.sd),
         rebound_velocity_sd: after.map(|v| v.sd),
+        touch_velocity_sd: touch
+            .zip(change)
+            .map(|(touch, change)| touch.velocity_sd(change, options.driving_acceleration)),
         impulse_sd: impulse.map(|j| j.1),
         ..Measured::default()
     };
@@ -364,6 +373,27 @@ fn crossings_sd(track: &Track, contacts: &Contacts, place: &Surroundings) -> [f6
             // The force hardly rises there: anywhere in between.
             false => time,
         }
+    })
+}
+
+/// A threshold that leaves much of the contact out.
+fn high_threshold(
+    signals: &Signals,
+    contacts: &Contacts,
+    place: &Surroundings,
+    options: &ExtractOptions,
+) -> Option<Finding> {
+    let window = contacts.windows.iter().find(|w| w.onset == place.onset)?;
+    let share = contacts.threshold / window.peak;
+    let channel = &signals.force.as_ref()?.name;
+    (share > HIGH_THRESHOLD).then(|| Finding::HighThreshold {
+        channel: channel.clone(),
+        threshold: contacts.threshold,
+        share,
+        cure: match options.trigger.threshold {
+            Threshold::Fixed(_) => "Lower `threshold` in [contact], or leave it to the noise",
+            Threshold::Automatic { .. } => "The noise asks for it: look at cable and amplifier",
+        },
     })
 }
 

@@ -127,6 +127,16 @@ pub enum Finding {
         "no force channel: the contact window comes from the deceleration in '{channel}' and is known to about {resolution:.2e} s"
     )]
     WindowFromMotion { channel: String, resolution: f64 },
+    #[error(
+        "the threshold of {threshold:.2} N is {:.0} % of the largest force in '{channel}': the contact begins before and ends after what is shown, its duration is too short, and velocities, restitution and energies are less certain. {cure}",
+        100.0 * share
+    )]
+    HighThreshold {
+        channel: String,
+        threshold: f64,
+        share: f64,
+        cure: &'static str,
+    },
     #[error("the noise of '{channel}' cannot be measured; {floor:.3e} is assumed ({reason})")]
     NoiseAtFloor {
         channel: String,
@@ -327,6 +337,7 @@ impl Finding {
             Self::Gravity { .. } => "gravity",
             Self::OffsetRemoved { .. } => "offset-removed",
             Self::WindowFromMotion { .. } => "window-from-motion",
+            Self::HighThreshold { .. } => "high-threshold",
             Self::NoiseAtFloor { .. } => "noise-at-floor",
             Self::Glitch { .. } | Self::Spikes { .. } => "glitch",
             Self::SpikesKept { .. } => "spike",

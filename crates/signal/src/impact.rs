@@ -76,6 +76,9 @@ pub struct Measured {
     pub impact_velocity_sd: Option<f64>,
     /// Standard uncertainty of the speed of rebound, likewise; m/s.
     pub rebound_velocity_sd: Option<f64>,
+    /// Standard uncertainty of what changes the velocity between touch and the crossing of the
+    /// threshold, which either velocity leaves out; m/s.
+    pub touch_velocity_sd: Option<f64>,
     /// Standard uncertainty of the duration, from noise at the crossings of the threshold; s.
     pub contact_duration_sd: Option<f64>,
     /// Standard uncertainty of the largest force, from noise and offset; N.

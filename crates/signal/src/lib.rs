@@ -52,6 +52,7 @@ pub mod ringing;
 pub mod spike;
 pub mod straight_line;
 pub mod tap;
+mod touch;
 mod track;
 mod trajectory;
 pub mod trigger;

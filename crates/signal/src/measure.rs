@@ -5,7 +5,7 @@ use crate::kinematics::Motion;
 use crate::polynomial::{PolynomialFit, fit_polynomial};
 
 /// Margin of the velocity fits next to onset and end; part of the contact's duration.
-const GUARD: f64 = 0.05;
+pub(crate) const GUARD: f64 = 0.05;
 
 /// Samples wanted for a velocity fit, where the recording has them.
 const WANTED_SAMPLES: usize = 5;

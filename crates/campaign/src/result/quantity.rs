@@ -80,20 +80,33 @@ fn relative(sd: Option<f64>, value: Option<f64>) -> Option<f64> {
     (value != 0.0).then(|| sd / value.abs())
 }
 
+/// Of a velocity at touch or separation, from that of the motion beside the contact.
+fn velocity_sd(s: &Measured, of_motion: Option<f64>) -> Option<f64> {
+    Some(of_motion?.hypot(s.touch_velocity_sd.unwrap_or(0.0)))
+}
+
+fn impact_velocity_sd(s: &Measured) -> Option<f64> {
+    velocity_sd(s, s.impact_velocity_sd)
+}
+
+fn rebound_velocity_sd(s: &Measured) -> Option<f64> {
+    velocity_sd(s, s.rebound_velocity_sd)
+}
+
 /// e = v₂/v₁, of velocities whose errors are independent.
 fn restitution_sd(s: &Measured) -> Option<f64> {
-    let (v1, s1) = (s.impact_velocity?, s.impact_velocity_sd?);
-    let (v2, s2) = (s.rebound_velocity?, s.rebound_velocity_sd?);
+    let (v1, s1) = (s.impact_velocity?, impact_velocity_sd(s)?);
+    let (v2, s2) = (s.rebound_velocity?, rebound_velocity_sd(s)?);
     (v1 != 0.0).then(|| (s2 / v1).hypot(v2 * s1 / (v1 * v1)))
 }
 
 /// E = ½ m v² at a mass that is known: σ(E) = 2 E σ(v)/v.
 fn impact_energy_sd(s: &Measured) -> Option<f64> {
-    Some(2.0 * s.impact_energy? * relative(s.impact_velocity_sd, s.impact_velocity)?)
+    Some(2.0 * s.impact_energy? * relative(impact_velocity_sd(s), s.impact_velocity)?)
 }
 
 fn elastic_energy_sd(s: &Measured) -> Option<f64> {
-    Some(2.0 * s.elastic_energy? * relative(s.rebound_velocity_sd, s.rebound_velocity)?)
+    Some(2.0 * s.elastic_energy? * relative(rebound_velocity_sd(s), s.rebound_velocity)?)
 }
 
 fn absorbed_energy_sd(s: &Measured) -> Option<f64> {
@@ -205,13 +218,13 @@ pub const QUANTITIES: [Quantity; 26] = [
     quantity(
         "impact_velocity",
         ("Impact velocity", "v₁", "m/s"),
-        both!(impact_velocity, |s| s.impact_velocity_sd, |m| m.velocity),
+        both!(impact_velocity, impact_velocity_sd, |m| m.velocity),
     )
     .headed("velocity"),
     quantity(
         "rebound_velocity",
         ("Rebound velocity", "v₂", "m/s"),
-        both!(rebound_velocity, |s| s.rebound_velocity_sd, |m| {
+        both!(rebound_velocity, rebound_velocity_sd, |m| {
             m.summary.separation_velocity
         }),
     )
