@@ -216,3 +216,39 @@ fn rejects_contacts_that_are_too_short_with_words() {
         .to_string();
     assert!(error.contains("three successive samples"), "{error}");
 }
+
+/// Equal contacts of 4 ms with pauses, in a recording that has little else: the first ones are
+/// contacts too, and no noise of the last.
+#[test]
+fn recovers_equal_contacts_that_fill_the_recording() {
+    for count in [2, 3, 4, 6] {
+        for (pause, lead) in [(0.5e-3, 1e-3), (1e-3, 1e-3), (3e-3, 1e-3), (3e-3, 4e-3)] {
+            for (noise, seed) in [(0.02, 1), (0.3, 2), (0.3, 3)] {
+                let mut source = noise_source(seed, 0);
+                let period = 4e-3 + pause;
+                let samples = ((2.0 * lead + f64::from(count) * period) / 1e-5) as usize;
+                let times: Vec<f64> = (0..samples).map(|i| i as f64 * 1e-5).collect();
+                let values = times.iter().map(|t| {
+                    let since = (t - lead) % period;
+                    let inside = *t > lead && *t < lead + f64::from(count) * period;
+                    let pushed = match inside && since < 4e-3 {
+                        true => 20.0 * (PI * since / 4e-3).sin().powf(1.5),
+                        false => 0.0,
+                    };
+                    pushed + noise * normal(&mut source)
+                });
+                let values: Vec<f64> = values.collect();
+                let signal = Signal {
+                    name: "force",
+                    unit: "N",
+                    times: &times,
+                    values: &values,
+                };
+                let found = find_contacts(&signal, &TriggerOptions::default());
+                let case = format!("{count} contacts, {pause} s, {lead} s, {noise} N");
+                let windows = found.map(|own| own.windows.len());
+                assert_eq!(windows.ok(), Some(count as usize), "{case}");
+            }
+        }
+    }
+}

@@ -296,7 +296,9 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     };
     let mut contacts = none_yet(reversed, smoothing);
     let mut rise = signal.times[top] - signal.times[before.min(top)];
-    for first_pass in [true, false] {
+    let mut first_pass = true;
+    let mut refused = None;
+    loop {
         let height = averaged[top] - centre;
         let quiet = quiet_stretch(signal.times, signal.values, before, (height, rise));
         let (mean, deviation) = baseline(&signal.values[quiet.clone()])
@@ -335,19 +337,33 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
             release,
             options.minimum_gap,
         );
-        let Some(first) = contacts.windows.first() else {
-            return Err(Error::NoContact {
+        // A second look, from less, needs a level zero to look from.
+        let looked_again = refused.is_some();
+        let first = contacts.windows.first().copied();
+        let Some(first) = first.filter(|_| !looked_again || !quiet.is_empty()) else {
+            let error = refused.take().unwrap_or_else(|| Error::NoContact {
                 channel: signal.name.to_owned(),
                 largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
                 threshold: contacts.threshold,
                 unit: signal.unit,
             });
+            // Contacts as large as the strongest may lie before it, and pass for noise.
+            let earlier = before_all(&averaged, top, centre, sign);
+            if looked_again || !first_pass || earlier >= before {
+                return Err(error);
+            }
+            refused = Some(error);
+            before = earlier;
+            continue;
         };
+        if !first_pass {
+            return Ok(contacts);
+        }
+        (first_pass, refused) = (false, None);
         let until = first.onset - BASELINE_GUARD * (first.end - first.onset);
         rise = 0.5 * (first.end - first.onset);
         before = signal.times.partition_point(|&t| t < until);
     }
-    Ok(contacts)
 }
 
 /// No contacts, of a sign and a smoothing that are known.
@@ -468,6 +484,14 @@ fn pilot_level(values: &[f64]) -> (f64, bool) {
 /// Samples of a recording of `n` from which its level is first guessed.
 fn pilot_samples(n: usize) -> usize {
     ((PILOT_SHARE * n as f64) as usize).clamp(LEAST_BASELINE.min(n), n)
+}
+
+/// Samples before anything that reaches half of the strongest contact begins, less a guard.
+fn before_all(values: &[f64], extreme: usize, centre: f64, sign: f64) -> usize {
+    let half = 0.5 * sign * (values[extreme] - centre);
+    let high = |v: &f64| sign * (v - centre) >= half;
+    let first = values.iter().position(high).unwrap_or(extreme);
+    pre_contact(values, first, centre, sign)
 }
 
 /// Samples before the strongest contact begins, less a guard.
