@@ -379,6 +379,13 @@ fn value_findings(name: &str, values: &ValueScan) -> Vec<FindingOutcome> {
         let message = format!("\"{name}\": {} samples are infinite", values.infinite);
         findings.push(FindingOutcome::new("infinite", message));
     }
+    if let Some(value) = values.dead() {
+        let message = format!(
+            "\"{name}\": all {} samples are {value}; nothing was connected, or it is switched off",
+            values.samples
+        );
+        findings.push(FindingOutcome::new("dead-channel", message));
+    }
     if let Some((limit, run)) = values.clipped() {
         let message = format!(
             "\"{name}\": {run} successive samples stand at the extreme value {limit}; \

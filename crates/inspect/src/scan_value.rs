@@ -7,6 +7,10 @@ use std::collections::BinaryHeap;
 /// Successive samples at an extreme value that look like clipping.
 pub const CLIPPED_RUN: u64 = 4;
 
+/// A plateau has a side that is steeper than this many of the channel's smallest steps: the
+/// rounded top of a pulse that is stored in coarse steps has none; 1.
+const CORNER: f64 = 4.0;
+
 /// Distinct values up to which a channel is a logic level, never clipped.
 const LOGIC_LEVELS: usize = 3;
 
@@ -48,8 +52,9 @@ pub struct ValueScan {
     /// Largest sample.
     pub largest: Option<f64>,
     run: u64,
-    run_at_smallest: u64,
-    run_at_largest: u64,
+    at_smallest: Plateau,
+    at_largest: Plateau,
+    smallest_step: Option<f64>,
     levels: Vec<f64>,
     // Counts of distances 1, 2, … between rows with a sample.
     gaps: Vec<u64>,
@@ -58,6 +63,15 @@ pub struct ValueScan {
     steps: Decimated,
     spikes: BinaryHeap<StandingOut>,
     forgotten: bool,
+}
+
+/// Samples that stand at one value.
+#[derive(Clone, Copy, Debug, Default)]
+struct Plateau {
+    /// Most successive ones.
+    run: u64,
+    /// Largest step to that value or from it; unit of the channel.
+    step: f64,
 }
 
 /// Longest usual distance between rows with a sample.
@@ -143,21 +157,31 @@ impl ValueScan {
     }
 
     fn extremes(&mut self, value: f64) {
+        let step = self.before[0].map_or(0.0, |before| (value - before).abs());
         self.run = match self.before[0] == Some(value) {
             true => self.run + 1,
             false => 1,
         };
+        if step > 0.0 && self.smallest_step.is_none_or(|smallest| step < smallest) {
+            self.smallest_step = Some(step);
+        }
         if self.smallest.is_none_or(|smallest| value < smallest) {
-            (self.smallest, self.run_at_smallest) = (Some(value), 0);
+            (self.smallest, self.at_smallest) = (Some(value), Plateau::default());
         }
         if self.largest.is_none_or(|largest| value > largest) {
-            (self.largest, self.run_at_largest) = (Some(value), 0);
+            (self.largest, self.at_largest) = (Some(value), Plateau::default());
         }
-        if self.smallest == Some(value) {
-            self.run_at_smallest = self.run_at_smallest.max(self.run);
-        }
-        if self.largest == Some(value) {
-            self.run_at_largest = self.run_at_largest.max(self.run);
+        let extremes = [
+            (self.smallest, &mut self.at_smallest),
+            (self.largest, &mut self.at_largest),
+        ];
+        for (extreme, plateau) in extremes {
+            if extreme == Some(value) {
+                plateau.run = plateau.run.max(self.run);
+            }
+            if extreme == Some(value) || extreme == self.before[0] {
+                plateau.step = plateau.step.max(step);
+            }
         }
     }
 
@@ -194,8 +218,8 @@ impl ValueScan {
 
     /// An extreme value at which the channel stands, and for how many samples.
     ///
-    /// That is no clipping where it is zero, as of a force plate that nobody stands on, or
-    /// where the channel rests there.
+    /// That is no clipping where it is zero, as of a force plate that nobody stands on, where
+    /// the channel rests there, or where it gets there in its smallest steps.
     pub fn clipped(&self) -> Option<(f64, u64)> {
         if self.levels.len() <= LOGIC_LEVELS {
             return None;
@@ -203,12 +227,19 @@ impl ValueScan {
         let (low, high) = (self.smallest?, self.largest?);
         let middle = self.values.quantile(0.5, 1)?;
         let far = (high - middle).max(middle - low);
-        let extremes = [(low, self.run_at_smallest), (high, self.run_at_largest)];
-        let clips = |(value, run): &(f64, u64)| {
+        let extremes = [(low, self.at_smallest), (high, self.at_largest)];
+        let clips = |(value, plateau): &(f64, Plateau)| {
             let rests = self.samples >= LEAST_TOLD && (value - middle).abs() <= RESTS * far;
-            *run >= CLIPPED_RUN && *value != 0.0 && !rests
+            let corner = plateau.step > CORNER * self.smallest_step.unwrap_or(0.0);
+            plateau.run >= CLIPPED_RUN && *value != 0.0 && !rests && corner
         };
-        extremes.into_iter().find(clips)
+        let clipped = extremes.into_iter().find(clips);
+        clipped.map(|(value, plateau)| (value, plateau.run))
+    }
+
+    /// The only value of a channel with so many samples that a live one would have more.
+    pub fn dead(&self) -> Option<f64> {
+        (self.levels.len() == 1 && self.samples >= LEAST_TOLD).then(|| self.levels[0])
     }
 
     /// Samples far from both neighbours, against what the channel usually does.
@@ -266,6 +297,16 @@ mod tests {
         assert_eq!(scan(&values, 4).clipped(), None);
         let values = [4.0, 4.1, 4.2, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0, 9.0, 4.0, 4.1];
         assert_eq!(scan(&values, 4).clipped(), None);
+        // The top of a half sine in 40 steps, and cut off at 30 of them.
+        let half_sine = (0..400).map(|i| (40.0 * (f64::from(i) / 127.3).sin()).round());
+        let half_sine: Vec<f64> = half_sine.collect();
+        assert_eq!(scan(&half_sine, 4).clipped(), None);
+        let mut fine: Vec<f64> = vec![0.0; 400];
+        fine.extend((0..400).map(|i| (40.0 * (f64::from(i) / 127.3).sin()).min(30.0)));
+        let found = scan(&fine, 4).clipped();
+        assert!(found.is_some_and(|(limit, run)| limit == 30.0 && run > 100));
+        assert_eq!(scan(&[2.5; 60], 7).dead(), Some(2.5));
+        assert_eq!(scan(&half_sine, 7).dead(), None);
         // Two levels are logic, not clipping.
         let values = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
         assert_eq!(scan(&values, 3).clipped(), None);

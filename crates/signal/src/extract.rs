@@ -23,8 +23,8 @@ use crate::orient::{
 use crate::polynomial::{PolynomialFit, fit_polynomial, local_polynomial};
 use crate::rate::derived_rate;
 use crate::recording::Recording;
-use crate::track::{Signals, Track, Tracks, mean_interval};
 use crate::touch::Touch;
+use crate::track::{Signals, Track, Tracks, mean_interval};
 use crate::trigger::scale::{index_of_largest, moving_mean};
 use crate::trigger::{Baseline, ContactChoice, Contacts, Threshold};
 use crate::uncertain::{Uncertain, sd_of_largest};

@@ -463,3 +463,38 @@ fn added_recordings_leave_the_rows_that_a_person_wrote() {
     assert!(now.lines().count() > specimens.lines().count(), "{now}");
     assert_eq!(std::fs::read_to_string(campaign).unwrap(), settings);
 }
+
+#[test]
+fn rejects_recordings_before_they_are_copied() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    recordings(folder, 1);
+    windfall(&["new", "pendulum", "bench"], folder);
+    let impacts = folder.join("bench/impacts.csv");
+    let add = ["add", "bench", "recordings", "--names", NAMES];
+    // As a spreadsheet may save it.
+    let table = "\u{feff}id,specimen,file\n";
+    let bytes: Vec<u8> = table.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    std::fs::write(&impacts, bytes).unwrap();
+    let (status, _, told) = windfall(&add, folder);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(
+        told.contains("impacts.csv") && told.contains("UTF-8"),
+        "{told}"
+    );
+    let raw = folder.join("bench/raw");
+    let copied = std::fs::read_dir(raw).map_or(0, |files| {
+        let recordings = files.filter(|file| {
+            let name = file.as_ref().unwrap().file_name();
+            name.to_string_lossy().ends_with(".csv")
+        });
+        recordings.count()
+    });
+    assert_eq!(copied, 0);
+    // Nothing of what was named could be added.
+    std::fs::write(&impacts, &table[3..]).unwrap();
+    std::fs::write(folder.join("other.txt"), "nothing\n").unwrap();
+    let (status, out, told) = windfall(&["add", "bench", "other.txt", "--names", NAMES], folder);
+    assert_eq!(status, Some(1), "{out}{told}");
+    assert!(told.contains("could be added"), "{out}{told}");
+}

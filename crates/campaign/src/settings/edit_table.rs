@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::known_names::known_names;
+use windfall_files::place::Place;
 use windfall_files::table::csv::{column_index, read_table, separator_of};
 use windfall_files::table::write::{csv_line, guarded};
 
@@ -83,8 +84,13 @@ struct Row {
 impl Text {
     fn read(path: &Path) -> Result<Self, Error> {
         let columns = read_table(path)?.columns;
-        let text =
-            std::fs::read_to_string(path).map_err(|source| Error::access(path, "read", source))?;
+        let bytes = std::fs::read(path).map_err(|source| Error::access(path, "read", source))?;
+        let text = String::from_utf8(bytes).map_err(|_| Error::NotUtf8 {
+            place: Place {
+                file: path.to_path_buf(),
+                line: 1,
+            },
+        })?;
         let above = text.split_inclusive('\n').take_while(|line| {
             let line = line.trim_start_matches('\u{feff}');
             line.starts_with('#') || line.trim().is_empty()

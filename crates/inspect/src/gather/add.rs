@@ -74,6 +74,12 @@ pub fn add_recordings(
         true => (BTreeSet::new(), BTreeSet::new()),
         false => (column(&table, "file")?, column(&table, "id")?),
     };
+    // Before a file is copied: can the tables be written?
+    add_rows(&impacts, &[])?;
+    let specimens = directory.join("specimens.csv");
+    if specimens.exists() {
+        add_rows(&specimens, &[])?;
+    }
     let mut added = Added::default();
     let raw = directory.join("raw");
     let found = match files.is_empty() {

@@ -39,6 +39,20 @@ pub struct Gathered {
     pub left_out: Vec<String>,
 }
 
+/// What a drop must have that names of recordings may tell: begin of the column, and where else
+/// it may stand.
+const DROP_NEEDS: [(&str, &str); 2] = [
+    (
+        "mass",
+        "[rig] mass, if it is one for all; else a column mass_g in specimens.csv",
+    ),
+    (
+        "drop_height",
+        "[rig] height, if it is one for all; else a column drop_height_mm in impacts.csv \
+         (in names: {drop_height_mm})",
+    ),
+];
+
 /// Makes a campaign of the recordings in a folder, which are copied.
 ///
 /// * `names`: pattern of their names; without one, each file has a specimen of its own
@@ -105,6 +119,18 @@ pub fn gather(
     );
     gathered.assumed.extend(guessed.assumed.iter().cloned());
     gathered.missing = guessed.missing;
+    if kind == TemplateKind::Drop {
+        let named = &recordings[0].1;
+        let named = named.of_specimen.iter().chain(&named.of_impact);
+        let named: Vec<&str> = named.map(|(column, _)| column.as_str()).collect();
+        let unknown = DROP_NEEDS.iter().filter(|need| {
+            let given = |column: &&str| column.starts_with(need.0);
+            !named.iter().any(given)
+        });
+        gathered
+            .missing
+            .extend(unknown.map(|need| need.1.to_owned()));
+    }
     let new = NewDirectory::begin(directory)?;
     let mut copied = Vec::new();
     for (file, read) in &recordings {

@@ -14,11 +14,18 @@ pub fn run(arguments: &AddArguments) -> anyhow::Result<()> {
     let names = arguments.names.as_deref();
     let added = add_recordings(&arguments.directory, &files, names)?;
     match arguments.format {
-        Format::Json => write_json(&added),
+        Format::Json => write_json(&added)?,
         Format::Csv => {
             let rows = added.impacts.iter().map(|id| vec![id.clone()]);
-            write_result(&csv_text(&["impact".to_owned()], rows)?)
+            write_result(&csv_text(&["impact".to_owned()], rows)?)?;
         }
-        Format::Text => write_result(&text_of_added(&added, &arguments.directory)),
+        Format::Text => write_result(&text_of_added(&added, &arguments.directory))?,
     }
+    let nothing = added.impacts.is_empty() && added.known == 0;
+    anyhow::ensure!(
+        !nothing || added.left_out.is_empty(),
+        "none of the {} recordings could be added",
+        added.left_out.len()
+    );
+    Ok(())
 }
