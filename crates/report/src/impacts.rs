@@ -14,7 +14,7 @@ use windfall_campaign::impacts::groups::{
 };
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::impacts::text::{
-    counted_line, derived_cell, laws_of, mass_line, own_codes, shared_codes,
+    bench_line, counted_line, derived_cell, laws_of, mass_line, own_codes, shared_codes,
 };
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
@@ -107,11 +107,11 @@ fn results(outcome: &CampaignOutcome) -> Section {
         tables,
         ..Section::of_words(
             "Results",
-            vec![format!(
-                "{}. {}.",
-                counted_line(outcome),
-                mass_line(outcome)
-            )],
+            [counted_line(outcome), mass_line(outcome)]
+                .into_iter()
+                .chain(bench_line(outcome))
+                .map(|line| format!("{line}."))
+                .collect(),
         )
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::impact::Measured;
 
-use crate::uncertain::Uncertain;
+use crate::uncertain::{Uncertain, weighted_mean};
 
 /// Mass of a carriage under a constant driving acceleration:
 ///
@@ -53,26 +53,7 @@ pub fn mass_from_impulse(measured: &Measured, driving: Uncertain) -> Result<Unce
     Ok(Uncertain::new(mass, variance.sqrt()))
 }
 
-/// Mean of independent estimates of one mass, weighted by 1/u², with the larger of the
-/// standard errors from the u and from their scatter. What the estimates share must be
-/// left out of the u and added to the mean. `None` of nothing.
-pub fn mean_mass(masses: &[Uncertain]) -> Option<Uncertain> {
-    let weight = |mass: &Uncertain| 1.0 / (mass.sd * mass.sd).max(f64::MIN_POSITIVE);
-    let total: f64 = masses.iter().map(weight).sum();
-    if masses.is_empty() {
-        return None;
-    }
-    let mean = masses.iter().map(|m| m.value * weight(m)).sum::<f64>() / total;
-    let chi_square: f64 = masses
-        .iter()
-        .map(|m| weight(m) * (m.value - mean).powi(2))
-        .sum();
-    let freedom = masses.len().saturating_sub(1).max(1) as f64;
-    let excess = (chi_square / freedom).max(1.0);
-    Some(Uncertain::new(mean, (excess / total).sqrt()))
-}
-
-/// One mass from several impacts: [`mean_mass`] with the scatter of each impact, plus
+/// One mass from several impacts: [`weighted_mean`] with the scatter of each impact, plus
 /// the shared uncertainty of the driving acceleration. `None` if no impact shows a mass.
 pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Uncertain> {
     let mean = |acceleration: f64| {
@@ -81,7 +62,7 @@ pub fn mass_from_impulses(impacts: &[Measured], driving: Uncertain) -> Option<Un
             .iter()
             .filter_map(|measured| mass_from_impulse(measured, exact).ok())
             .collect();
-        mean_mass(&masses)
+        weighted_mean(&masses)
     };
     let mass = mean(driving.value)?;
     let shifted = mean(driving.value + driving.sd)?;
@@ -128,7 +109,7 @@ mod tests {
     fn closed_form_mean_of_two_that_disagree() {
         // 0.4 and 0.6 with u = 0.01: mean 0.5, standard error 0.1, not 0.007.
         let one = |value| Uncertain::new(value, 0.01);
-        let mean = mean_mass(&[one(0.4), one(0.6)]).unwrap();
+        let mean = weighted_mean(&[one(0.4), one(0.6)]).unwrap();
         assert!((mean.value - 0.5).abs() < 1e-12 && (mean.sd - 0.1).abs() < 1e-12);
     }
 

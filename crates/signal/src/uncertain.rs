@@ -23,6 +23,25 @@ impl Uncertain {
     }
 }
 
+/// Mean of independent estimates of one quantity, weighted by 1/u², with the larger of the
+/// standard errors from the u and from their scatter. What the estimates share must be
+/// left out of the u and added to the mean. `None` of nothing.
+pub fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
+    let weight = |own: &Uncertain| 1.0 / (own.sd * own.sd).max(f64::MIN_POSITIVE);
+    let total: f64 = estimates.iter().map(weight).sum();
+    if estimates.is_empty() {
+        return None;
+    }
+    let mean = estimates.iter().map(|m| m.value * weight(m)).sum::<f64>() / total;
+    let chi_square: f64 = estimates
+        .iter()
+        .map(|m| weight(m) * (m.value - mean).powi(2))
+        .sum();
+    let freedom = estimates.len().saturating_sub(1).max(1) as f64;
+    let excess = (chi_square / freedom).max(1.0);
+    Some(Uncertain::new(mean, (excess / total).sqrt()))
+}
+
 /// Standard deviation of the largest of samples that lie on a parabola but for white noise.
 ///
 /// The noise moves the largest sample less than a sample, since several compete for it:

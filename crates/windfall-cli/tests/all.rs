@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod bench;
 mod bounces;
 mod calibrate;
 mod command_line;

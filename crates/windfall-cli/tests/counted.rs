@@ -4,7 +4,7 @@ use assert_cmd::Command;
 use serde_json::Value;
 use std::path::Path;
 
-fn windfall(line: &str, folder: &Path) -> (Option<i32>, String, String) {
+pub(crate) fn windfall(line: &str, folder: &Path) -> (Option<i32>, String, String) {
     let mut command = Command::cargo_bin("windfall").unwrap();
     let output = command.args(line.split(' ')).current_dir(folder).output();
     let output = output.unwrap();
@@ -16,7 +16,7 @@ fn windfall(line: &str, folder: &Path) -> (Option<i32>, String, String) {
     )
 }
 
-fn fitted(folder: &Path) -> Value {
+pub(crate) fn fitted(folder: &Path) -> Value {
     let (status, out, told) = windfall("fit campaign --format json", folder);
     assert_eq!(status, Some(0), "{told}");
     serde_json::from_str(&out).unwrap()

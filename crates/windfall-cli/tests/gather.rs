@@ -317,6 +317,29 @@ fn closed_form_channels_of_foreign_headers_in_new_campaigns_and_added_recordings
 }
 
 #[test]
+fn closed_form_quantities_are_those_that_the_recordings_have() {
+    let laboratory = tempfile::tempdir().unwrap();
+    let folder = laboratory.path();
+    for (header, quantities) in [
+        ("Time (s);Acc (m/s^2)", "quantities = [\"acceleration\"]"),
+        ("Time (s);Force (N)", "quantities = [\"force\"]"),
+        (
+            "Time (s);Force (N);Travel (mm)",
+            "quantities = [\"displacement\", \"force\"]",
+        ),
+    ] {
+        let name = header.len().to_string();
+        small(&folder.join(&name).join("a.csv"), header);
+        let campaign = format!("of-{name}");
+        let line = ["new", "carriage", &campaign, "--from", &name];
+        let (status, _, told) = windfall(&line, folder);
+        assert_eq!(status, Some(0), "{told}");
+        let text = std::fs::read_to_string(folder.join(&campaign).join("campaign.toml")).unwrap();
+        assert!(text.contains(quantities), "{header}: {text}");
+    }
+}
+
+#[test]
 fn rejects_to_guess_between_two_columns_of_one_unit() {
     let laboratory = tempfile::tempdir().unwrap();
     let folder = laboratory.path();

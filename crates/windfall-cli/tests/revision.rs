@@ -126,10 +126,10 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        6,
+        7,
         [
-            "ab1030ef5e762684",
-            "5b7f69fedcc30b1b",
+            "2cc86e103f3180ca",
+            "3180431c04882dff",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

@@ -10,6 +10,7 @@ use crate::recording::digests::Digests;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
+use crate::result::bench::{bench_findings, pooled_bench};
 use crate::result::counted::mark_left_out;
 use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::summary::{summarise, summarise_groups};
@@ -260,6 +261,8 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let groups = summarise_groups(&impacts);
     let mut findings = rig.findings.clone();
     findings.extend(law_findings(campaign, &impacts));
+    let bench = pooled_bench(&impacts);
+    findings.extend(bench_findings(&rig.rig, &bench, &impacts));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));
     CampaignOutcome {
@@ -267,6 +270,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         campaign: campaign.shared.title.clone(),
         simulated: campaign.shared.simulated.clone(),
         effective_mass: rig.mass,
+        bench,
         status: evaluated.status,
         impacts,
         failed: std::mem::take(&mut evaluated.failed),

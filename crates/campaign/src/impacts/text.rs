@@ -23,6 +23,9 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
     let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
     let _ = writeln!(text, "{}", counted_line(outcome));
     let _ = writeln!(text, "{}", mass_line(outcome));
+    if let Some(line) = bench_line(outcome) {
+        let _ = writeln!(text, "{line}");
+    }
     let laws = laws_of(outcome);
     for law in &laws {
         text += &law_text(outcome, law);
@@ -113,6 +116,22 @@ pub fn mass_line(outcome: &CampaignOutcome) -> String {
         1 => format!("{known}, from impulse and change of velocity of one impact"),
         n => format!("{known}, from impulse and change of velocity of {n} impacts"),
     }
+}
+
+/// What Newton's law says of force and displacement over all impacts.
+pub fn bench_line(outcome: &CampaignOutcome) -> Option<String> {
+    let shown = |name: &str, factor: f64| {
+        let own = outcome.bench.get(name)?;
+        Some(value_and_sd(own.value * factor, Some(own.sd * factor)))
+    };
+    let impacts = outcome.bench.0.first()?.1.impacts;
+    let gain = shown("force_gain", 1.0).map(|gain| format!("is {gain} times mass × acceleration"));
+    let delay = shown("force_delay", 1e6);
+    let delay = delay.map(|delay| format!("comes {delay} µs after the displacement"));
+    let told = gain.into_iter().chain(delay).join(" and ");
+    Some(format!(
+        "By Newton's law, over {impacts} impacts: the force {told}"
+    ))
 }
 
 /// Laws in order of first appearance.

@@ -33,7 +33,7 @@ const SLACK: f64 = 0.05;
 const IMPULSE_RATIO: f64 = 1.25;
 /// Logarithm by which a delay between force and displacement shifts the stiffness, for each
 /// part of the contact's duration; 1.
-const SHIFT_OF_DELAY: f64 = 10.0;
+pub(crate) const SHIFT_OF_DELAY: f64 = 10.0;
 /// Largest shift of the stiffness, as a logarithm, that delay and gain of the force may cause;
 /// 1.
 const SHIFT: f64 = 0.15;

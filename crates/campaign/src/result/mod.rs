@@ -1,5 +1,6 @@
 //! Results of fits as they are stored and shown.
 
+pub mod bench;
 pub mod counted;
 pub mod fit_outcome;
 pub mod interval_outcome;

@@ -145,6 +145,19 @@ pub struct MassOutcome {
     pub impacts: usize,
 }
 
+/// A quantity of the bench, from all impacts together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
+pub struct PooledOutcome {
+    /// Weighted mean; SI.
+    pub value: f64,
+    /// Its standard uncertainty; SI.
+    pub sd: f64,
+    /// Impacts that it comes from.
+    pub impacts: usize,
+    /// Sum of the squares of their departures from the mean, in their deviations; 1.
+    pub chi_square: f64,
+}
+
 /// Everything that `fit` gives for a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct CampaignOutcome {
@@ -156,6 +169,10 @@ pub struct CampaignOutcome {
     pub simulated: Option<String>,
     /// Effective mass at the contact.
     pub effective_mass: MassOutcome,
+    /// Gain and delay of the force over all impacts, by Newton's law: "force_gain",
+    /// "force_delay".
+    #[serde(default)]
+    pub bench: Named<PooledOutcome>,
     /// How the results came about.
     pub status: StatusOutcome,
     /// One entry per impact and law.

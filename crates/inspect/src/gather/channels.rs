@@ -74,7 +74,7 @@ pub fn campaign_text(
         }
         if !replaced {
             text += &waiting;
-            text += &line_of(line, section, group, &mut guessed);
+            text += &line_of(line, section, group, (seen, &mut guessed));
         }
         waiting.clear();
     }
@@ -95,19 +95,47 @@ pub(crate) fn remarks(assumed: &[String]) -> String {
 }
 
 /// A line of the template as it stands in the campaign.
-fn line_of(line: &str, section: &str, group: Option<&str>, guessed: &mut Guessed) -> String {
+fn line_of(
+    line: &str,
+    section: &str,
+    group: Option<&str>,
+    (seen, guessed): (&Inspection, &mut Guessed),
+) -> String {
     let key = line.split_once('=').map(|(key, _)| key.trim());
     match (section, key) {
         ("rig", Some(key)) if key != "kind" && !key.starts_with('#') => {
             guessed.missing.push(format!("[rig] {key}"));
             format!("{UNWRITTEN}{line}\n")
         }
+        ("fit", Some("quantities")) => quantities_line(line, seen),
         ("contact", Some("threshold")) => "threshold = \"auto\"\n".to_owned(),
         ("summary", Some("group")) => match group {
             Some(group) => format!("group = {}\n", quoted(group)),
             None => format!("# {line}\n"),
         },
         _ => format!("{line}\n"),
+    }
+}
+
+/// The quantities to be fitted, of those of the template that the recordings have; an
+/// acceleration where there is no displacement.
+fn quantities_line(line: &str, seen: &Inspection) -> String {
+    let has = |roles: &[&str]| {
+        let mut channels = seen.columns.iter().filter_map(|column| column.channel);
+        channels.any(|channel| roles.contains(&channel))
+    };
+    let displacement = has(&["position", "angle", "count", "phase_a"]);
+    let found = [
+        ("displacement", displacement),
+        ("rate", !displacement && has(&["velocity"])),
+        ("force", has(&["force"])),
+        ("acceleration", !displacement && has(&["acceleration"])),
+    ];
+    let found = found.iter().filter(|(_, has)| *has);
+    let found: Vec<String> = found.map(|(name, _)| quoted(name)).collect();
+    match (displacement && has(&["force"])) || found.is_empty() {
+        true => format!("{line}\n"),
+        false => format!("quantities = [{}]\n", found.join(", ")),
     }
 }
 

@@ -344,7 +344,7 @@ fn pooled(rings: &[Option<Ringing>]) -> Option<PooledRinging> {
     let known: Vec<Ringing> = rings.iter().flatten().copied().collect();
     let mean = |part: fn(&Ringing) -> Uncertain| {
         let parts: Vec<Uncertain> = known.iter().map(part).collect();
-        crate::mass::mean_mass(&parts)
+        crate::uncertain::weighted_mean(&parts)
     };
     Some(PooledRinging {
         period: mean(|r| r.period)?,

@@ -1,10 +1,10 @@
 //! Whether the restitutions of a drop agree, and what it means if they do not.
 
 use crate::bounce::train::Bounce;
-use crate::mass::mean_mass;
 use crate::restitution::estimate::{DropConditions, Restitution, RestitutionMethod};
 use crate::restitution::finding::RestitutionFinding;
 use crate::uncertain::Uncertain;
+use crate::uncertain::weighted_mean;
 
 /// Differences beyond this many standard uncertainties are reported; 1.
 const SIGNIFICANT: f64 = 3.0;
@@ -82,7 +82,7 @@ fn force_scale(
             ))
         })
         .collect();
-    if let Some(mean) = mean_mass(&factors) {
+    if let Some(mean) = weighted_mean(&factors) {
         // All impacts share the mass.
         let sd = mean.sd.hypot(mean.value * mass.sd / mass.value);
         let off = (mean.value - 1.0).abs();
