@@ -45,6 +45,40 @@ pub enum CampaignError {
         /// Where, and how to settle it.
         doubt: String,
     },
+    /// A quantity of the bench that the impacts do not tell.
+    #[error(
+        "{path}: [fit] estimate: {quantity} cannot be told: {told} of the impacts show the {what} \
+         of the force beside the displacement, and at least 5 are needed; take it out of \
+         `estimate`", path = path.display()
+    )]
+    BenchUntold {
+        /// The campaign directory.
+        path: PathBuf,
+        /// The quantity.
+        quantity: &'static str,
+        /// What of the force tells it.
+        what: &'static str,
+        /// Impacts that tell something.
+        told: usize,
+    },
+    /// Impacts that contradict what is given with an uncertainty.
+    #[error(
+        "{path}: [fit] estimate: campaign.toml says {quantity} = {:.4e} ± {:.1e} {unit}, and the \
+         impacts say {:.4e} ± {:.1e}: give it the uncertainty that it really has, or leave ± out \
+         to take what the impacts say", told[0], told[1], found[0], found[1], path = path.display()
+    )]
+    BenchContradicted {
+        /// The campaign directory.
+        path: PathBuf,
+        /// The quantity.
+        quantity: &'static str,
+        /// Its SI unit.
+        unit: &'static str,
+        /// Value and standard uncertainty in campaign.toml; SI.
+        told: [f64; 2],
+        /// Those of the impacts; SI.
+        found: [f64; 2],
+    },
     /// A recording that may not be read.
     #[error("{place}: the recording \"{file}\" in column \"file\" is not read: {problem}")]
     RecordingRefused {

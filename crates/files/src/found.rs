@@ -99,6 +99,10 @@ pub struct SpreadOutcome {
     /// `None` for one impact.
     #[serde(default)]
     pub robust_sd: Option<f64>,
+    /// Standard uncertainty that all values share, as from the bench: no number of impacts
+    /// makes it smaller. `None` where nothing is known of it.
+    #[serde(default)]
+    pub common_sd: Option<f64>,
 }
 
 /// Spread of some values; `None` when there is none.
@@ -120,6 +124,7 @@ pub fn spread(values: &[f64]) -> Option<SpreadOutcome> {
     let cv = sd.filter(|_| mean != 0.0).map(|sd| sd / mean.abs());
     let (median, deviation) = robust_spread(values)?;
     Some(SpreadOutcome {
+        common_sd: None,
         mean,
         sd,
         n,

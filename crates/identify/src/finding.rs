@@ -81,21 +81,27 @@ pub enum Finding {
         /// Noise of a sample; SI.
         noise: f64,
     },
-    /// The uncertainty of the mass widens the intervals.
-    #[error("the intervals include the uncertainty of the mass, {} ± {}", Shown(*mass, ""), Shown(*sd, "kg"))]
-    UncertainMass {
-        /// Mass; kg.
-        mass: f64,
-        /// Its standard uncertainty; kg.
+    /// The uncertainty of a quantity of the bench widens the intervals.
+    #[error("the intervals include the uncertainty of the bench's {quantity}, {} ± {}", Shown(*value, ""), Shown(*sd, unit))]
+    UncertainBench {
+        /// Its name.
+        quantity: &'static str,
+        /// Its value; SI.
+        value: f64,
+        /// Its standard uncertainty; SI.
         sd: f64,
+        /// SI unit.
+        unit: &'static str,
     },
-    /// The uncertainty of the mass could not be carried over.
-    #[error("the uncertainty of the mass, {} ± {}, is not in the intervals: with another mass the fit failed; they are too narrow", Shown(*mass, ""), Shown(*sd, "kg"))]
-    MassLeftOut {
-        /// Mass; kg.
-        mass: f64,
-        /// Its standard uncertainty; kg.
+    /// The uncertainty of a quantity of the bench could not be carried over.
+    #[error("the uncertainty of the bench's {quantity}, {}, is not in the intervals: with another value the fit failed; they are too narrow", Shown(*sd, unit))]
+    BenchLeftOut {
+        /// Its name.
+        quantity: &'static str,
+        /// Its standard uncertainty; SI.
         sd: f64,
+        /// SI unit.
+        unit: &'static str,
     },
     /// A counted displacement was taken at the changes of its count.
     #[error("displacement is counted in steps of {}: it took part with the {edges} instants at which its count changes", Shown(*quantum, "m"))]
@@ -204,8 +210,14 @@ impl Finding {
             Self::Singular => "singular",
             Self::StructuredResiduals { .. } => "structured-residuals",
             Self::Misfit { .. } => "misfit",
-            Self::UncertainMass { .. } => "uncertain-mass",
-            Self::MassLeftOut { .. } => "mass-left-out",
+            Self::UncertainBench {
+                quantity: "mass", ..
+            } => "uncertain-mass",
+            Self::UncertainBench { .. } => "uncertain-bench",
+            Self::BenchLeftOut {
+                quantity: "mass", ..
+            } => "mass-left-out",
+            Self::BenchLeftOut { .. } => "bench-left-out",
             Self::CountedDisplacement { .. } => "counted-displacement",
             Self::ComputedRate => "computed-rate",
             Self::WeakDirection { .. } => "weak-direction",
@@ -262,13 +274,15 @@ mod tests {
             at_bound.to_string(),
             "p ended on its upper bound 6: the data call for a value beyond it, or do not determine it"
         );
-        let uncertain = Finding::UncertainMass {
-            mass: 0.517_517_338_604_740_6,
+        let uncertain = Finding::UncertainBench {
+            quantity: "mass",
+            value: 0.517_517_338_604_740_6,
             sd: 0.004_415_280_502_853_594,
+            unit: "kg",
         };
         assert_eq!(
             uncertain.to_string(),
-            "the intervals include the uncertainty of the mass, 0.5175 ± 0.004415 kg"
+            "the intervals include the uncertainty of the bench's mass, 0.5175 ± 0.004415 kg"
         );
         let cases = [
             (0.0, "0"),

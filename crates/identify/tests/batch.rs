@@ -35,7 +35,6 @@ fn pendulum() -> Motion {
 fn carriage() -> Motion {
     Motion::from(&Rig::Carriage(Carriage {
         mass: 0.25,
-        mass_sd: 0.0,
         driving_acceleration: 0.4,
     }))
 }

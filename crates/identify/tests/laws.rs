@@ -6,10 +6,13 @@
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
-use windfall_identify::fit::problem::{FitOptions, LawProblem, Treatment, Weighting};
+use windfall_identify::finding::Finding;
+use windfall_identify::fit::problem::{FitOptions, LawProblem, Quantities, Treatment, Weighting};
 use windfall_identify::fit::result::fit_impact;
+use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_identify::rig::simulate::{simulate_rig, trajectory};
+use windfall_identify::samples::Quantity;
 use windfall_signal::impact::{Impact, Measured, Series};
 use windfall_signal::noise::gaussian::{noise_source, normal};
 
@@ -57,7 +60,6 @@ const CASES: [(&str, &str); 14] = [
 fn rig() -> Rig {
     Rig::Carriage(Carriage {
         mass: 0.2,
-        mass_sd: 0.0,
         driving_acceleration: 0.3,
     })
 }
@@ -179,12 +181,11 @@ fn closed_form_uncertain_mass() {
     };
     let problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
     let fit = |mass_sd: f64| {
-        let rig = Rig::Carriage(Carriage {
-            mass: 0.2,
-            mass_sd,
-            driving_acceleration: 0.3,
-        });
-        fit_impact(&impact, &rig, &problem, &FitOptions::default()).unwrap()
+        let options = FitOptions {
+            bench: BenchSd::default().with(BenchQuantity::Mass, mass_sd),
+            ..FitOptions::default()
+        };
+        fit_impact(&impact, &rig(), &problem, &options).unwrap()
     };
     let (sure, unsure) = (fit(0.0), fit(0.02));
     for (sure, unsure) in sure.parameters.iter().zip(&unsure.parameters) {
@@ -194,6 +195,35 @@ fn closed_form_uncertain_mass() {
             "{sure:?} {unsure:?}"
         );
     }
+}
+
+/// What a bench that is not as told moves, for one standard uncertainty: a force that reads
+/// 1 % more, in a fit of the force alone, is a law with k and c 1 % larger.
+#[test]
+fn closed_form_uncertain_force() {
+    let exact = impact("kuwabara-kono(k=753599, c=1524)", 7);
+    let problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
+    let fit = |quantities: &[Quantity], quantity, sd: f64| {
+        let options = FitOptions {
+            quantities: Quantities::of(quantities),
+            bench: BenchSd::default().with(quantity, sd),
+            ..FitOptions::default()
+        };
+        fit_impact(&exact, &rig(), &problem, &options).unwrap()
+    };
+    let both = [Quantity::Displacement, Quantity::Force];
+    // A mass and a force that are both 1 % more say the same of every law, the other way round.
+    let by_mass = fit(&both, BenchQuantity::Mass, 0.002);
+    let by_gain = fit(&both, BenchQuantity::ForceGain, 0.01);
+    let (mass, gain) = (&by_mass.common[0], &by_gain.common[0]);
+    assert_eq!((mass.quantity.name(), mass.sd), ("mass", 0.002));
+    for (i, own) in by_mass.parameters.iter().enumerate() {
+        let sum = (mass.shifts[i] - gain.shifts[i]) / own.value;
+        assert!((sum - 0.01).abs() < 2e-4, "{}: {sum}", own.name);
+        assert!(own.sd > mass.shifts[i].abs(), "{own:?}");
+    }
+    let code = by_gain.findings.iter().map(Finding::code);
+    assert!(code.into_iter().any(|code| code == "uncertain-bench"));
 }
 
 /// Without noise the law comes out to the accuracy of the integration, with

@@ -52,7 +52,6 @@ fn built_in(text: &str) -> Law {
 fn free_body() -> Rig {
     Rig::Carriage(Carriage {
         mass: 0.2,
-        mass_sd: 0.0,
         driving_acceleration: 0.0,
     })
 }

@@ -87,7 +87,9 @@ fn estimate(
     posterior: bool,
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
-    let rig = find_rig(campaign)?;
+    let mut campaign = campaign.clone();
+    let rig = find_rig(&mut campaign)?;
+    let campaign = &campaign;
     let law = &campaign.fit.laws[0];
     let problem = law_problem(law, &campaign.fit.free);
     let mut first = campaign.clone();

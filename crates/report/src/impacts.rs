@@ -14,7 +14,7 @@ use windfall_campaign::impacts::groups::{
 };
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::impacts::text::{
-    bench_line, counted_line, derived_cell, laws_of, mass_line, own_codes, shared_codes,
+    bench_lines, counted_line, derived_cell, laws_of, mass_line, own_codes, shared_codes,
 };
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
@@ -109,7 +109,7 @@ fn results(outcome: &CampaignOutcome) -> Section {
             "Results",
             [counted_line(outcome), mass_line(outcome)]
                 .into_iter()
-                .chain(bench_line(outcome))
+                .chain(bench_lines(outcome))
                 .map(|line| format!("{line}."))
                 .collect(),
         )

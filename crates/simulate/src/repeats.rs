@@ -261,7 +261,6 @@ fn drop_on(
     }
     let rig = Rig::Carriage(Carriage {
         mass: plan.mass,
-        mass_sd: 0.0,
         driving_acceleration: STANDARD_GRAVITY,
     });
     let velocity = (2.0 * energy / plan.mass).sqrt() * (1.0 + plan.scatter * normal(source));

@@ -129,8 +129,8 @@ impl LiveCampaign {
     /// # Errors
     /// The campaign is wrong, or nothing shows the mass of its rig.
     pub fn open(directory: &Path) -> Result<Self, Error> {
-        let campaign = read_campaign(directory)?;
-        let rig = find_rig(&campaign)?;
+        let mut campaign = read_campaign(directory)?;
+        let rig = find_rig(&mut campaign)?;
         Ok(Self { campaign, rig })
     }
 

@@ -51,7 +51,8 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
         return Err(unknown("no impact counts, so there is no law", advice));
     }
     let estimates = estimates_of(&impacts);
-    let population = two_stage(&estimates);
+    let mut population = two_stage(&estimates);
+    let common = add_common(&mut population.of_mean, &estimates, &impacts);
     let law = law_of(campaign, kind, &impacts, &estimates, &population)?;
     let mut cautions: Vec<String> = outcome.findings.iter().map(|f| f.message.clone()).collect();
     if impacts.len() < all {
@@ -76,7 +77,14 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
         covariance: Some(CardCovariance {
             of: labels_of(&estimates.names, &estimates.logarithmic),
             matrix: population.of_mean.clone(),
-            of_what: "the median fruit, by the scatter between fruit".to_owned(),
+            of_what: match common {
+                true => {
+                    "the median fruit, by the scatter between fruit and the uncertainty of \
+                         the bench"
+                }
+                false => "the median fruit, by the scatter between fruit",
+            }
+            .to_owned(),
         })
         .filter(|covariance| covariance.matrix.iter().flatten().all(|v| v.is_finite())),
         range: range_of(outcome, &impacts),
@@ -103,6 +111,37 @@ fn impactor(campaign: &ImpactCampaign) -> &'static str {
         RigPlan::Pendulum(_) => "impactor of a pendulum",
         RigPlan::Carriage { .. } => "impactor on a line",
     }
+}
+
+/// Adds to a covariance what the uncertainties of the bench do to all fruit alike, which no
+/// number of them makes smaller; whether there was any.
+fn add_common(
+    covariance: &mut [Vec<f64>],
+    estimates: &Estimates,
+    impacts: &[&ImpactOutcome],
+) -> bool {
+    let quantities = impacts.iter().flat_map(|impact| &impact.common.0);
+    let mut quantities: Vec<&str> = quantities.map(|(name, _)| name.as_str()).collect();
+    quantities.sort_unstable();
+    quantities.dedup();
+    for quantity in &quantities {
+        let moved = estimates.names.iter().zip(&estimates.logarithmic);
+        let moved = moved.map(|(name, logarithmic)| {
+            let all = impacts.iter().filter_map(|impact| {
+                let shift = *impact.common.get(quantity)?.get(name)?;
+                let value = impact.parameters.get(name)?.value;
+                Some(if *logarithmic { shift / value } else { shift })
+            });
+            all.sum::<f64>() / impacts.len() as f64
+        });
+        let moved: Vec<f64> = moved.collect();
+        for (row, by_row) in covariance.iter_mut().zip(&moved) {
+            for (cell, by_column) in row.iter_mut().zip(&moved) {
+                *cell += by_row * by_column;
+            }
+        }
+    }
+    !quantities.is_empty()
 }
 
 /// What was estimated on each impact, by fruit; positive scales as logarithms.

@@ -1,6 +1,7 @@
 //! The rig of a campaign with its mass, weighed or from the recordings.
 
 use crate::error::CampaignError;
+use crate::impacts::bench::estimate_bench;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
 use crate::result::outcome::MassOutcome;
@@ -8,6 +9,7 @@ use crate::settings::model::{ImpactCampaign, ImpactEntry, MassPlan, RigPlan};
 use rayon::prelude::*;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_identify::rig::bench::BenchQuantity;
 use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_signal::impact::Measured;
 use windfall_signal::mass::{mass_from_impulse, mass_from_impulses};
@@ -24,14 +26,25 @@ pub struct RigFound {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// The rig of a campaign.
+/// The rig of a campaign, with what of it is estimated; its uncertainties go to the fits.
 ///
 /// A mass "from impulse" is one mass for the whole campaign: the weighted mean
 /// over all impacts that show impulse and velocities.
 ///
 /// # Errors
-/// No impact shows the mass.
-pub fn find_rig(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
+/// No impact shows the mass, or those of [`estimate_bench`].
+pub fn find_rig(campaign: &mut ImpactCampaign) -> Result<RigFound, Error> {
+    estimate_bench(campaign)?;
+    let found = rig_of(campaign)?;
+    let bench = &mut campaign.bench.sd;
+    if matches!(found.rig, Rig::Carriage(_)) {
+        *bench = bench.with(BenchQuantity::Mass, found.mass.sd);
+    }
+    campaign.fit.options.bench = *bench;
+    Ok(found)
+}
+
+fn rig_of(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
     match campaign.rig {
         RigPlan::Pendulum(pendulum) => Ok(known(Rig::Pendulum(pendulum), 0.0)),
         RigPlan::Carriage {
@@ -41,7 +54,6 @@ pub fn find_rig(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
         } => {
             let carriage = Carriage {
                 mass: value,
-                mass_sd: sd,
                 driving_acceleration,
             };
             Ok(known(Rig::Carriage(carriage), sd))
@@ -102,7 +114,6 @@ fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFoun
         .collect();
     let rig = Rig::Carriage(Carriage {
         mass: mass.value,
-        mass_sd: mass.sd,
         driving_acceleration: driving.value,
     });
     let mass = MassOutcome {
@@ -115,6 +126,16 @@ fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFoun
         mass,
         findings,
     })
+}
+
+/// What the signals of an impact say on the rig as it is told.
+pub(crate) fn measured_of(
+    campaign: &ImpactCampaign,
+    entry: &ImpactEntry,
+) -> Result<Measured, Error> {
+    let mass = rig_of(campaign)?.rig.effective_mass();
+    let (impact, _) = extract_recording(campaign, entry, Some(mass))?;
+    Ok(impact.measured)
 }
 
 /// What an impact that shows the mass measured.

@@ -1,5 +1,6 @@
 //! `windfall fit` for single impacts: the main job.
 
+pub mod bench;
 pub mod card;
 pub mod csv;
 pub mod failed_fit;

@@ -1,5 +1,6 @@
 //! `windfall fit`: the main job, recordings → parameters, table, store.
 
+use crate::impacts::bench::estimate_bench;
 use crate::impacts::card::card_of_fit;
 use crate::impacts::figure_impact::figure_of_impact;
 use crate::impacts::fit::Fits;
@@ -12,10 +13,10 @@ use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
 use crate::result::bench::{bench_findings, pooled_bench};
 use crate::result::counted::mark_left_out;
-use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
+use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::summary::{summarise, summarise_groups};
 use crate::settings::kind::CAMPAIGN_FILE;
-use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry};
+use crate::settings::model::{BenchFound, Campaign, ImpactCampaign, ImpactEntry};
 use crate::settings::read::read_campaign;
 use rayon::prelude::*;
 use std::path::Path;
@@ -25,7 +26,7 @@ use windfall_contact::expression::typical;
 use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::grouped;
+use windfall_files::named::{Named, grouped};
 use windfall_files::on_threads::on_threads;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
@@ -113,6 +114,8 @@ fn campaign_of_recording(file: &Path) -> Result<ImpactCampaign, Error> {
         )
     })?;
     let mut campaign = read_campaign(directory)?;
+    // The bench is that of all impacts.
+    estimate_bench(&mut campaign)?;
     let files = campaign.shared.files.clone();
     campaign
         .shared
@@ -127,13 +130,13 @@ fn campaign_of_recording(file: &Path) -> Result<ImpactCampaign, Error> {
 }
 
 fn fit(
-    campaign: ImpactCampaign,
+    mut campaign: ImpactCampaign,
     reuse: Option<Reuse>,
     request: &FitRequest,
     progress: Progress,
 ) -> Result<FittedCampaign, Error> {
     request.check_outputs()?;
-    let rig = find_rig(&campaign)?;
+    let rig = find_rig(&mut campaign)?;
     let fits = Fits {
         campaign: &campaign,
         rig: &rig,
@@ -244,6 +247,19 @@ fn skewed(groups: &[GroupOutcome]) -> Vec<FindingOutcome> {
     findings
 }
 
+/// What of the bench was estimated.
+fn estimated(campaign: &ImpactCampaign) -> Named<BenchOutcome> {
+    let of = |found: &BenchFound| BenchOutcome {
+        value: found.value,
+        sd: found.sd,
+        unit: found.quantity.unit().to_owned(),
+        told: found.told,
+        impacts: found.impacts,
+    };
+    let found = campaign.bench.found.iter();
+    found.map(|own| (own.quantity.name(), of(own))).collect()
+}
+
 /// Results with their summary.
 fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> CampaignOutcome {
     let (campaign, rig) = (fits.campaign, fits.rig);
@@ -271,6 +287,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         simulated: campaign.shared.simulated.clone(),
         effective_mass: rig.mass,
         bench,
+        estimated: estimated(campaign),
         status: evaluated.status,
         impacts,
         failed: std::mem::take(&mut evaluated.failed),

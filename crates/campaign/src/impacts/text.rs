@@ -5,7 +5,7 @@ use crate::impacts::groups::{
     SOURCES, derived_tables, groups_of, heading_of, law_table, parameter_table, restitution_table,
 };
 use crate::result::counted::reasons_counted;
-use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use std::fmt::Write;
@@ -23,7 +23,7 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
     let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
     let _ = writeln!(text, "{}", counted_line(outcome));
     let _ = writeln!(text, "{}", mass_line(outcome));
-    if let Some(line) = bench_line(outcome) {
+    for line in bench_lines(outcome) {
         let _ = writeln!(text, "{line}");
     }
     let laws = laws_of(outcome);
@@ -65,8 +65,12 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
     }
     if impacts.len() > 1 {
         text += "\nMean ± SD over the impacts (SD in % of the mean):\n";
-        let table = parameter_table(&groups_of(outcome, law), &impacts);
+        let groups = groups_of(outcome, law);
+        let table = parameter_table(&groups, &impacts);
         let _ = writeln!(text, "{table}");
+        if let Some(line) = common_line(&groups) {
+            let _ = writeln!(text, "{line}");
+        }
     }
     text += &restitution_table(&impacts);
     if impacts.len() > LISTED_IMPACTS {
@@ -118,20 +122,49 @@ pub fn mass_line(outcome: &CampaignOutcome) -> String {
     }
 }
 
-/// What Newton's law says of force and displacement over all impacts.
-pub fn bench_line(outcome: &CampaignOutcome) -> Option<String> {
+/// What of the bench was estimated, and what Newton's law says of force and displacement over
+/// all impacts.
+pub fn bench_lines(outcome: &CampaignOutcome) -> Vec<String> {
+    let estimated = outcome.estimated.0.iter().map(|(name, own)| {
+        let unit = if own.unit == "1" { "" } else { " " };
+        let unit = format!("{unit}{}", own.unit.trim_start_matches('1'));
+        format!(
+            "Estimated from {} impacts: {name} = {}{unit} ({} in campaign.toml)",
+            own.impacts,
+            value_and_sd(own.value, Some(own.sd)),
+            plain(own.told)
+        )
+    });
     let shown = |name: &str, factor: f64| {
         let own = outcome.bench.get(name)?;
         Some(value_and_sd(own.value * factor, Some(own.sd * factor)))
     };
-    let impacts = outcome.bench.0.first()?.1.impacts;
     let gain = shown("force_gain", 1.0).map(|gain| format!("is {gain} times mass × acceleration"));
     let delay = shown("force_delay", 1e6);
     let delay = delay.map(|delay| format!("comes {delay} µs after the displacement"));
     let told = gain.into_iter().chain(delay).join(" and ");
-    Some(format!(
-        "By Newton's law, over {impacts} impacts: the force {told}"
-    ))
+    let pooled = outcome.bench.0.first().map(|(_, own)| {
+        let impacts = own.impacts;
+        format!("By Newton's law, over {impacts} impacts: the force {told}")
+    });
+    estimated.chain(pooled).collect()
+}
+
+/// What the bench makes of the means, where something of it is uncertain.
+pub fn common_line(groups: &[&GroupOutcome]) -> Option<String> {
+    let group = groups.first()?;
+    let parts = group.parameters.0.iter().filter_map(|(name, spread)| {
+        let part = spread.common_sd? / spread.mean.abs();
+        Some(format!("{name} by {:.2} %", 100.0 * part))
+    });
+    let parts: Vec<String> = parts.collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "The bench's uncertainty moves all of them together, {}: no number of impacts makes \
+             that smaller.",
+            parts.join(", ")
+        )
+    })
 }
 
 /// Laws in order of first appearance.

@@ -49,7 +49,7 @@ impl PartPlan {
             text: text.replace(UNWRITTEN, ""),
         };
         let file: CampaignFile = parse_source(&source)?;
-        let rig = rig_plan(&source, file.rig.as_ref())?;
+        let (rig, _) = rig_plan(&source, file.rig.as_ref())?;
         let channels = channel_plans(&source, file.channels.as_ref())?;
         Ok(Self {
             contact: contact_plan(&source, &file, &rig)?,

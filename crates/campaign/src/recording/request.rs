@@ -3,8 +3,8 @@
 use crate::settings::channels::{KINDS, Kind, parse_scale};
 use crate::settings::kind::CampaignKind;
 use crate::settings::model::{
-    Campaign, ChannelPlan, FilePlan, FitPlan, ImpactCampaign, ImpactEntry, MassPlan, RigPlan,
-    TimePlan,
+    BenchPlan, Campaign, ChannelPlan, FilePlan, FitPlan, ImpactCampaign, ImpactEntry, MassPlan,
+    RigPlan, TimePlan,
 };
 use crate::settings::rig::{FROM_IMPULSE, STANDARD_GRAVITY};
 use std::path::Path;
@@ -148,6 +148,7 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Impac
         }],
     };
     Ok(ImpactCampaign {
+        bench: BenchPlan::default(),
         shared,
         contact: extract_options(request, &rig)?,
         rig,
@@ -300,6 +301,8 @@ fn channel_plan(text: &str) -> Result<ChannelPlan, Error> {
         return Err(unusable(option(), problem));
     }
     Ok(ChannelPlan {
+        scale_sd: 0.0,
+        delay_sd: 0.0,
         table: kind.table,
         line: 0,
         quantity: kind.quantity,

@@ -42,8 +42,8 @@ pub fn pooled_bench(impacts: &[ImpactOutcome]) -> Named<PooledOutcome> {
     Named(pooled.collect())
 }
 
-/// A weighted mean without those that are far from the others.
-fn pooled(mut values: Vec<Uncertain>) -> Option<PooledOutcome> {
+/// A weighted mean without those that are far from the others; `None` of fewer than five.
+pub(crate) fn pooled(mut values: Vec<Uncertain>) -> Option<PooledOutcome> {
     let plain: Vec<f64> = values.iter().map(|own| own.value).collect();
     let (median, spread) = robust_spread(&plain)?;
     values.retain(|own| (own.value - median).abs() <= OWN_FAULT * spread.hypot(own.sd));

@@ -8,7 +8,7 @@ use smol_str::{SmolStr, format_smolstr};
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
 use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
-use windfall_identify::fit::result::{Estimate, Fit, QuantityFit};
+use windfall_identify::fit::result::{CommonShift, Estimate, Fit, QuantityFit};
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Measured};
@@ -58,6 +58,7 @@ pub fn impact_outcome(
         derived_from,
         fitted,
         directions: directions(fit),
+        common: common(fit),
         intervals: interval_outcome(fit),
         findings: findings(signal_findings, fit),
         left_out: Vec::new(),
@@ -114,6 +115,14 @@ fn directions(fit: &Fit) -> Vec<Named<f64>> {
     let names = || estimates(fit).map(|e| e.name.clone());
     let of = |change: &[f64]| names().zip(change.iter().copied()).collect();
     fit.directions.iter().map(|d| of(&d.change)).collect()
+}
+
+/// What the bench moves, by its quantities and the names of the estimates.
+fn common(fit: &Fit) -> Named<Named<f64>> {
+    let names = || estimates(fit).map(|e| e.name.clone());
+    let of = |own: &CommonShift| names().zip(own.shifts.iter().copied()).collect();
+    let all = fit.common.iter();
+    all.map(|own| (own.quantity.name(), of(own))).collect()
 }
 
 /// "k, c" → correlation, of all pairs of estimates.

@@ -79,6 +79,10 @@ pub struct ImpactOutcome {
     /// best: the change of each that changes −2 ln of the likelihood by 1.
     #[serde(default)]
     pub directions: Vec<Named<f64>>,
+    /// What one standard uncertainty of each quantity of the bench adds to each estimate. It is
+    /// part of their deviations, and the same error in all impacts.
+    #[serde(default)]
+    pub common: Named<Named<f64>>,
     /// How the intervals came about.
     #[serde(default)]
     pub intervals: IntervalOutcome,
@@ -158,6 +162,21 @@ pub struct PooledOutcome {
     pub chi_square: f64,
 }
 
+/// A quantity of the bench that was estimated over all impacts.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
+pub struct BenchOutcome {
+    /// Value; SI.
+    pub value: f64,
+    /// Its standard uncertainty; SI.
+    pub sd: f64,
+    /// SI unit.
+    pub unit: String,
+    /// What campaign.toml says; SI.
+    pub told: f64,
+    /// Impacts that it comes from.
+    pub impacts: usize,
+}
+
 /// Everything that `fit` gives for a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct CampaignOutcome {
@@ -173,6 +192,9 @@ pub struct CampaignOutcome {
     /// "force_delay".
     #[serde(default)]
     pub bench: Named<PooledOutcome>,
+    /// Quantities of the bench that were estimated over all impacts: "inertia".
+    #[serde(default)]
+    pub estimated: Named<BenchOutcome>,
     /// How the results came about.
     pub status: StatusOutcome,
     /// One entry per impact and law.

@@ -17,6 +17,19 @@ pub fn summarise_groups(impacts: &[ImpactOutcome]) -> Vec<GroupOutcome> {
     groups.collect()
 }
 
+/// What of the bench's uncertainty the mean of a parameter carries: the mean of what each
+/// quantity moves, over the quantities in squares.
+fn common_sd(impacts: &[&ImpactOutcome], parameter: &str) -> Option<f64> {
+    let all = impacts.iter().flat_map(|impact| &impact.common.0);
+    let moved = all.filter_map(|(quantity, moved)| Some((quantity, *moved.get(parameter)?)));
+    let by_quantity = grouped(moved);
+    let means = by_quantity
+        .iter()
+        .map(|(_, moved)| moved.iter().sum::<f64>() / moved.len() as f64);
+    let square: f64 = means.map(|mean| mean * mean).sum();
+    (!by_quantity.is_empty()).then(|| square.sqrt())
+}
+
 /// Spread of parameters and derived quantities over those of some impacts of one law that
 /// count.
 pub fn summarise(law: &str, group: Option<&str>, impacts: &[&ImpactOutcome]) -> GroupOutcome {
@@ -26,13 +39,17 @@ pub fn summarise(law: &str, group: Option<&str>, impacts: &[&ImpactOutcome]) -> 
     let parameters = impacts.iter().flat_map(|impact| &impact.parameters.0);
     let estimated = parameters.filter(|(_, estimate)| !estimate.held);
     let derived = impacts.iter().flat_map(|impact| &impact.derived.0);
+    let mut parameters = spreads(estimated.map(|(name, e)| (name.as_str(), e.value)));
+    for (name, spread) in &mut parameters.0 {
+        spread.common_sd = common_sd(impacts, name);
+    }
     GroupOutcome {
         group: group.map(str::to_owned),
         law: law.to_owned(),
         impacts: impacts.len(),
         left_out: all - impacts.len(),
         specimens: impacts.iter().map(|i| &i.specimen).unique().count(),
-        parameters: spreads(estimated.map(|(name, e)| (name.as_str(), e.value))),
+        parameters,
         derived: spreads(derived.filter_map(|(name, value)| Some((name.as_str(), (*value)?)))),
     }
 }

@@ -6,9 +6,10 @@ use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, missing, number_that, optional_quantity, place_at, positive_quantity,
-    refused,
+    refused, uncertain_quantity,
 };
 use windfall_numerics::unit::quantity::{UnitError, parse_as, parse_unit};
+use windfall_numerics::unit::uncertain::parse_uncertain;
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::recording::Quantity;
 
@@ -128,7 +129,8 @@ pub fn channel_plan(
         };
         return Err(missing(source, &at, &needed, kind.table.to_owned()));
     };
-    let (scale, offset) = calibration(source, kind, channel)?;
+    let ((scale, scale_sd), offset) = calibration(source, kind, channel)?;
+    let (delay, delay_sd) = delay(source, kind, file)?;
     Ok(ChannelPlan {
         table: kind.table,
         line: place_at(source, &column.span()).line,
@@ -137,11 +139,14 @@ pub fn channel_plan(
         time: file.time.as_ref().map(|time| time.get_ref().clone()),
         scale: scale * sign(source, kind, file)?,
         offset,
-        delay: delay(source, kind, file)?,
+        delay,
+        scale_sd,
+        delay_sd,
     })
 }
 
-/// SI units per unit of the column, and the zero in units of the column.
+/// SI units per unit of the column with the uncertainty as a part of them, and the zero in
+/// units of the column.
 ///
 /// With a sensitivity the column is a voltage (or whatever the sensitivity says
 /// above the line); without one the column is the quantity itself.
@@ -149,7 +154,7 @@ fn calibration(
     source: &TomlSource,
     kind: &Kind,
     channel: &Spanned<ChannelFile>,
-) -> Result<(f64, f64), Error> {
+) -> Result<(Scale, f64), Error> {
     let file = channel.get_ref();
     if kind.unit.is_empty() {
         return as_it_is(source, kind, file);
@@ -157,18 +162,19 @@ fn calibration(
     let Some(sensitivity) = &file.sensitivity else {
         return direct_calibration(source, kind, channel);
     };
-    let per_unit = sensitivity_value(source, kind, sensitivity)?;
+    let (per_unit, sd) = sensitivity_value(source, kind, sensitivity)?;
     let (key, expected) = ((kind.table, "gain"), "a number other than zero");
     let fits = |gain: f64| gain != 0.0 && gain.is_finite();
     let gain = number_that(source, file.gain.as_ref(), key, fits, expected)?;
     let gain = gain.unwrap_or(1.0);
-    let cell = column_unit(source, kind, file, "V")?;
+    let (cell, cell_sd) = column_unit(source, kind, file, "V")?;
     let offset = offset_value(source, kind, file, "V")?;
-    Ok((cell / (per_unit * gain), offset / cell))
+    let scale = (cell / (per_unit * gain), sd.hypot(cell_sd));
+    Ok((scale, offset / cell))
 }
 
 /// Counts and levels are taken as they are.
-fn as_it_is(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<(f64, f64), Error> {
+fn as_it_is(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<(Scale, f64), Error> {
     let problem = "its samples are taken as they are; remove the line";
     let refuse = |value: &Spanned<QuantityText>, key| {
         Err(refused(source, value, (kind.table, key), problem))
@@ -178,7 +184,7 @@ fn as_it_is(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<(f64
         (_, Some(offset), ..) => refuse(offset, "offset"),
         (_, _, Some(gain), _) => Err(refused(source, gain, (kind.table, "gain"), problem)),
         (.., Some(unit)) => Err(refused(source, unit, (kind.table, "unit"), problem)),
-        _ => Ok((1.0, 0.0)),
+        _ => Ok(((1.0, 0.0), 0.0)),
     }
 }
 
@@ -186,11 +192,25 @@ fn sensitivity_value(
     source: &TomlSource,
     kind: &Kind,
     text: &Spanned<QuantityText>,
-) -> Result<f64, Error> {
+) -> Result<Scale, Error> {
     let wrong = |problem: String| refused(source, text, (kind.table, "sensitivity"), problem);
-    match parse_as(&text.get_ref().0, &kind.sensitivity_unit()) {
-        Ok(0.0) => Err(wrong("a sensitivity cannot be zero".to_owned())),
-        value => value.map_err(|error| wrong(error.to_string())),
+    match parse_known(&text.get_ref().0, &kind.sensitivity_unit(), kind) {
+        Ok((0.0, _)) => Err(wrong("a sensitivity cannot be zero".to_owned())),
+        Ok((value, sd)) => Ok((value, sd / value.abs())),
+        Err(error) => Err(wrong(error.to_string())),
+    }
+}
+
+/// A value and its standard uncertainty as a part of it.
+type Scale = (f64, f64);
+
+/// A value with the uncertainty behind it, which only a force may have; SI.
+fn parse_known(text: &str, unit: &str, kind: &Kind) -> Result<(f64, f64), UnitError> {
+    match kind.quantity {
+        Quantity::Force => {
+            parse_uncertain(text, unit).map(|(value, sd)| (value, sd.unwrap_or(0.0)))
+        }
+        _ => Ok((parse_as(text, unit)?, 0.0)),
     }
 }
 
@@ -199,7 +219,7 @@ fn direct_calibration(
     source: &TomlSource,
     kind: &Kind,
     channel: &Spanned<ChannelFile>,
-) -> Result<(f64, f64), Error> {
+) -> Result<(Scale, f64), Error> {
     let file = channel.get_ref();
     if file.unit.is_none() {
         let needed = Needed {
@@ -218,7 +238,7 @@ fn direct_calibration(
         let problem = "a gain belongs to a `sensitivity`; this channel has only a `unit`";
         return Err(refused(source, gain, (kind.table, "gain"), problem));
     }
-    Ok((cell, offset / cell))
+    Ok((cell, offset / cell.0))
 }
 
 /// SI value of one unit of the column.
@@ -227,14 +247,19 @@ fn column_unit(
     kind: &Kind,
     file: &ChannelFile,
     expected: &str,
-) -> Result<f64, Error> {
+) -> Result<Scale, Error> {
     let Some(unit) = &file.unit else {
-        return Ok(1.0);
+        return Ok((1.0, 0.0));
     };
     let wrong = |problem: String| refused(source, unit, (kind.table, "unit"), problem);
-    let scale = parse_scale(unit.get_ref(), expected).map_err(|error| wrong(error.to_string()))?;
+    let text = unit.get_ref();
+    let scale = match text.contains('±') {
+        true => parse_known(text, expected, kind),
+        false => parse_scale(text, expected).map(|scale| (scale, 0.0)),
+    };
+    let (scale, sd) = scale.map_err(|error| wrong(error.to_string()))?;
     match scale.is_normal() {
-        true => Ok(scale),
+        true => Ok((scale, sd / scale.abs())),
         false => Err(wrong("it scales the column to nothing".to_owned())),
     }
 }
@@ -268,8 +293,8 @@ fn offset_value(
     Ok(optional_quantity(source, file.offset.as_ref(), &needed)?.unwrap_or(0.0))
 }
 
-/// By how much the channel is late; s.
-fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {
+/// By how much the channel is late, and how uncertain that is; s.
+fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<(f64, f64), Error> {
     let needed = Needed {
         table: kind.table,
         key: "delay",
@@ -277,7 +302,12 @@ fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Er
         unit: "s",
         example: "delay = \"10 ms\"",
     };
-    Ok(optional_quantity(source, file.delay.as_ref(), &needed)?.unwrap_or(0.0))
+    let value = file.delay.as_ref();
+    let known = match kind.quantity {
+        Quantity::Force => uncertain_quantity(source, value, &needed)?,
+        _ => optional_quantity(source, value, &needed)?.map(|delay| (delay, 0.0)),
+    };
+    Ok(known.unwrap_or_default())
 }
 
 fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {

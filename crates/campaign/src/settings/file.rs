@@ -243,6 +243,8 @@ pub struct FitFile {
     pub laws: Option<Vec<Spanned<String>>>,
     /// Parameters that are estimated although they have a value.
     pub free: Option<Vec<Spanned<String>>>,
+    /// Quantities of the bench that are estimated over all impacts.
+    pub estimate: Option<Vec<Spanned<String>>>,
     /// Quantities in the cost function.
     pub quantities: Option<Vec<Spanned<String>>>,
     /// "inverse-variance" or "inverse-mean".

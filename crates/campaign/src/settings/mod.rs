@@ -1,5 +1,6 @@
 //! What campaign.toml, specimens.csv and impacts.csv say.
 
+pub mod bench;
 pub mod channels;
 pub mod conditioning;
 pub mod contact;

@@ -6,6 +6,7 @@ use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
 use windfall_formats::open::OpenOptions;
 use windfall_identify::fit::problem::FitOptions;
+use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_identify::rig::kind::Pendulum;
 use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;
@@ -56,12 +57,40 @@ pub struct ImpactCampaign {
     pub shared: Campaign,
     /// The rig.
     pub rig: RigPlan,
+    /// What of the bench is uncertain, and what is estimated.
+    pub bench: BenchPlan,
     /// How impacts are cut out; mass and time range of an impact are filled in later.
     pub contact: ExtractOptions,
     /// What is fitted.
     pub fit: FitPlan,
     /// Covariates of the population: columns, or their logarithms.
     pub covariates: Vec<String>,
+}
+
+/// What is known of the bench beyond its values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BenchPlan {
+    /// Standard uncertainties, which all impacts share.
+    pub sd: BenchSd,
+    /// Quantities that are to be estimated over all impacts.
+    pub estimate: Vec<BenchQuantity>,
+    /// Those that have been.
+    pub found: Vec<BenchFound>,
+}
+
+/// A quantity of the bench as the impacts tell it; SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BenchFound {
+    /// The quantity.
+    pub quantity: BenchQuantity,
+    /// Its value.
+    pub value: f64,
+    /// Its standard uncertainty.
+    pub sd: f64,
+    /// What campaign.toml says.
+    pub told: f64,
+    /// Impacts that it comes from.
+    pub impacts: usize,
 }
 
 /// The rig, as far as the campaign knows it.
@@ -145,6 +174,10 @@ pub struct ChannelPlan {
     /// Taken off the recorded times: filters, and averages that are stamped with
     /// the end of their interval, show an event late; s.
     pub delay: f64,
+    /// Standard uncertainty of the scale, as a part of it; 1.
+    pub scale_sd: f64,
+    /// Standard uncertainty of the delay; s.
+    pub delay_sd: f64,
 }
 
 /// What is fitted.

@@ -1,5 +1,6 @@
 //! campaign.toml, specimens.csv and impacts.csv → [`ImpactCampaign`].
 
+use crate::settings::bench::bench_plan;
 use crate::settings::channels::channel_plans;
 use crate::settings::contact::contact_plan;
 use crate::settings::file::CampaignFile;
@@ -28,9 +29,10 @@ pub fn read_campaign(directory: &Path) -> Result<ImpactCampaign, Error> {
     let file: CampaignFile = parse_source(&source)?;
     check_format(&source, file.format.as_ref())?;
 
-    let rig = rig_plan(&source, file.rig.as_ref())?;
+    let (rig, sd) = rig_plan(&source, file.rig.as_ref())?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
     let contact = contact_plan(&source, &file, &rig)?;
+    let bench = bench_plan(&source, &file, (&rig, sd), &channels)?;
     let user = user_laws(&source, &file.laws, directory)?;
     let fit = fit_plan(&source, &file.fit, user)?;
     let shared = (&file.campaign, &file.files, &file.summary);
@@ -38,6 +40,7 @@ pub fn read_campaign(directory: &Path) -> Result<ImpactCampaign, Error> {
     Ok(ImpactCampaign {
         shared: read_shared(&source, directory, kind, shared, channels)?,
         rig,
+        bench,
         contact,
         fit,
         covariates: file.population.covariates,

@@ -6,9 +6,10 @@ use std::ops::Range;
 use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
-    Needed, TomlSource, choice, missing, needed_quantity, positive_quantity, quantity_from_zero,
-    refused, uncertainty,
+    Needed, TomlSource, choice, missing, needed_quantity, quantity_from_zero, refused,
+    uncertain_quantity, uncertainty,
 };
+use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_identify::rig::kind::Pendulum;
 
 /// Standard acceleration of gravity, where the campaign gives none; m/s².
@@ -100,11 +101,14 @@ enum Kind {
     Carriage,
 }
 
-/// The rig of a campaign.
+/// The rig of a campaign, and the uncertainties that stand behind its values.
 ///
 /// # Errors
 /// A value is left out, is no such quantity, or is out of range.
-pub fn rig_plan(source: &TomlSource, rig: Option<&Spanned<RigFile>>) -> Result<RigPlan, Error> {
+pub fn rig_plan(
+    source: &TomlSource,
+    rig: Option<&Spanned<RigFile>>,
+) -> Result<(RigPlan, BenchSd), Error> {
     let Some(rig) = rig else {
         return Err(missing(source, &(0..0), &KIND, TABLE.to_owned()));
     };
@@ -117,7 +121,11 @@ pub fn rig_plan(source: &TomlSource, rig: Option<&Spanned<RigFile>>) -> Result<R
     }
 }
 
-fn pendulum(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<RigPlan, Error> {
+fn pendulum(
+    source: &TomlSource,
+    at: &Range<usize>,
+    rig: &RigFile,
+) -> Result<(RigPlan, BenchSd), Error> {
     let strangers = [
         (rig.mass_sd.as_ref(), "mass_sd"),
         (rig.driving_acceleration.as_ref(), "driving_acceleration"),
@@ -128,16 +136,33 @@ fn pendulum(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
     ];
     refuse(source, strangers, "a pendulum")?;
     let gravity = quantity_from_zero(source, rig.gravity.as_ref(), &GRAVITY)?;
-    Ok(RigPlan::Pendulum(Pendulum {
-        inertia: positive(source, at, rig.inertia.as_ref(), &INERTIA)?,
-        arm: positive(source, at, rig.arm.as_ref(), &ARM)?,
-        mass: positive(source, at, rig.mass.as_ref(), &PENDULUM_MASS)?,
-        centre_of_mass: needed_quantity(source, at, rig.centre_of_mass.as_ref(), &CENTRE)?,
+    let known = |value, needed| positive(source, at, value, needed);
+    let (inertia, inertia_sd) = known(rig.inertia.as_ref(), &INERTIA)?;
+    let (arm, arm_sd) = known(rig.arm.as_ref(), &ARM)?;
+    let (mass, mass_sd) = known(rig.mass.as_ref(), &PENDULUM_MASS)?;
+    let centre = uncertain_quantity(source, rig.centre_of_mass.as_ref(), &CENTRE)?;
+    let (centre_of_mass, centre_sd) =
+        centre.ok_or_else(|| missing(source, at, &CENTRE, TABLE.to_owned()))?;
+    let pendulum = Pendulum {
+        inertia,
+        arm,
+        mass,
+        centre_of_mass,
         gravity: gravity.unwrap_or(STANDARD_GRAVITY),
-    }))
+    };
+    let sd = BenchSd::default()
+        .with(BenchQuantity::Inertia, inertia_sd)
+        .with(BenchQuantity::Arm, arm_sd)
+        .with(BenchQuantity::Mass, mass_sd)
+        .with(BenchQuantity::CentreOfMass, centre_sd);
+    Ok((RigPlan::Pendulum(pendulum), sd))
 }
 
-fn carriage(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<RigPlan, Error> {
+fn carriage(
+    source: &TomlSource,
+    at: &Range<usize>,
+    rig: &RigFile,
+) -> Result<(RigPlan, BenchSd), Error> {
     let strangers = [
         (rig.inertia.as_ref(), "inertia"),
         (rig.arm.as_ref(), "arm"),
@@ -152,20 +177,30 @@ fn carriage(source: &TomlSource, at: &Range<usize>, rig: &RigFile) -> Result<Rig
         refuse(source, [sd], "a mass from impulse")?;
         MassPlan::FromImpulse
     } else {
-        MassPlan::Given {
-            value: positive(source, at, rig.mass.as_ref(), &CARRIAGE_MASS)?,
-            sd: uncertainty(source, rig.mass_sd.as_ref(), &MASS_SD)?,
+        let (value, behind) = positive(source, at, rig.mass.as_ref(), &CARRIAGE_MASS)?;
+        if let (Some(twice), true) = (&rig.mass_sd, behind > 0.0) {
+            let problem = "the mass has its uncertainty behind ±; remove one of them";
+            return Err(refused(source, twice, (TABLE, "mass_sd"), problem));
         }
+        MassPlan::Given {
+            value,
+            sd: behind.max(uncertainty(source, rig.mass_sd.as_ref(), &MASS_SD)?),
+        }
+    };
+    let sd = match mass {
+        MassPlan::Given { sd, .. } => BenchSd::default().with(BenchQuantity::Mass, sd),
+        MassPlan::FromImpulse => BenchSd::default(),
     };
     let driving = rig.driving_acceleration.as_ref();
     let driving_acceleration = needed_quantity(source, at, driving, &DRIVING)?;
     let driving_sd = rig.driving_acceleration_sd.as_ref();
     let driving_sd = uncertainty(source, driving_sd, &DRIVING_SD)?;
-    Ok(RigPlan::Carriage {
+    let plan = RigPlan::Carriage {
         mass,
         driving_acceleration,
         driving_acceleration_sd: driving_sd,
-    })
+    };
+    Ok((plan, sd))
 }
 
 fn refuse<const N: usize>(
@@ -187,7 +222,14 @@ fn positive(
     at: &Range<usize>,
     value: Option<&Spanned<QuantityText>>,
     needed: &Needed,
-) -> Result<f64, Error> {
-    positive_quantity(source, value, needed)?
-        .ok_or_else(|| missing(source, at, needed, TABLE.to_owned()))
+) -> Result<(f64, f64), Error> {
+    let known = uncertain_quantity(source, value, needed)?;
+    match (value, known) {
+        (Some(value), Some((number, _))) if number <= 0.0 => {
+            let problem = format!("must be above zero, for example: {}", needed.example);
+            Err(refused(source, value, (needed.table, needed.key), problem))
+        }
+        (_, Some(known)) => Ok(known),
+        (_, None) => Err(missing(source, at, needed, TABLE.to_owned())),
+    }
 }

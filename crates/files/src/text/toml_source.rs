@@ -11,6 +11,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use windfall_numerics::unit::nearest_name::nearest_names;
 use windfall_numerics::unit::quantity::{LARGEST, parse_as};
+use windfall_numerics::unit::uncertain::parse_uncertain;
 use windfall_source::stream::{is_stream, stream_bytes};
 
 /// A TOML file in memory.
@@ -197,6 +198,25 @@ pub fn optional_quantity(
         let key = (needed.table, needed.key);
         refused(source, value, key, error.to_string())
     })
+}
+
+/// A quantity that may be left out, with its standard uncertainty, zero without one; SI.
+///
+/// # Errors
+/// The text is no quantity of the unit, or its uncertainty cannot be used.
+pub fn uncertain_quantity(
+    source: &TomlSource,
+    value: Option<&Spanned<QuantityText>>,
+    needed: &Needed,
+) -> Result<Option<(f64, f64)>, Error> {
+    let Some(value) = value else { return Ok(None) };
+    match parse_uncertain(&value.get_ref().0, needed.unit) {
+        Ok((number, sd)) => Ok(Some((number, sd.unwrap_or(0.0)))),
+        Err(error) => {
+            let key = (needed.table, needed.key);
+            Err(refused(source, value, key, error.to_string()))
+        }
+    }
 }
 
 /// A quantity that must be there; its SI value.

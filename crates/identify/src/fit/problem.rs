@@ -2,6 +2,7 @@
 //! weights and the treatment of nuisances.
 
 use crate::fit::interval::IntervalOptions;
+use crate::rig::bench::BenchSd;
 use crate::samples::{QUANTITIES, Quantity};
 use serde::Serialize;
 use windfall_contact::expression::LawExpression;
@@ -170,6 +171,8 @@ pub struct FitOptions {
     pub confidence: f64,
     /// How the intervals are made.
     pub intervals: IntervalOptions,
+    /// What of the bench is uncertain; enters the deviations.
+    pub bench: BenchSd,
 }
 
 impl Default for FitOptions {
@@ -188,6 +191,7 @@ impl Default for FitOptions {
             max_evaluations: 200,
             confidence: 0.95,
             intervals: IntervalOptions::default(),
+            bench: BenchSd::default(),
         }
     }
 }

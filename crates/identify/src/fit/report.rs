@@ -57,6 +57,7 @@ impl Plan<'_> {
             onset: self.impact.onset + solution.onset,
             offset: solution.offset,
             directions: directions(&solution.covariance),
+            common: Vec::new(),
             intervals: self.interval_detail(solution),
             findings: self.findings.clone(),
         };

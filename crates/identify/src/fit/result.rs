@@ -2,13 +2,15 @@
 
 use crate::error::Error;
 use crate::finding::Finding;
+use crate::fit::interval::IntervalOptions;
 use crate::fit::plan::{Plan, plan};
 use crate::fit::problem::{FitOptions, LawProblem};
 use crate::fit::solve::Solution;
+use crate::rig::bench::{BenchQuantity, BenchSd};
 use crate::rig::kind::Rig;
 use windfall_signal::impact::Impact;
 
-pub use crate::fit::types::{Estimate, Fit, QuantityFit};
+pub use crate::fit::types::{CommonShift, Estimate, Fit, QuantityFit};
 
 /// Fits `problem` to `impact` as measured on `rig`.
 ///
@@ -39,10 +41,10 @@ pub fn fit_impact(
     let mut plan = plan(impact, rig, problem, options)?;
     let solution = plan.solve(rig)?;
     let mut fit = plan.report(&solution, rig)?;
-    if let Rig::Carriage(carriage) = rig
-        && carriage.mass_sd > 0.0
-    {
-        widen_for_mass(&mut fit, &plan, carriage.mass, carriage.mass_sd);
+    let quantile = plan.quantile(fit.samples);
+    for (quantity, sd) in options.bench.uncertain() {
+        let asked = (impact, rig, problem, options);
+        widen(&mut fit, asked, (quantity, sd), quantile);
     }
     Ok(fit)
 }
@@ -92,25 +94,66 @@ pub fn fit_laws(
         .collect()
 }
 
-/// Adds the uncertainty of the mass to the intervals, by fitting with the mass
-/// one standard deviation lower and higher.
-fn widen_for_mass(fit: &mut Fit, plan: &Plan, mass: f64, sd: f64) {
-    let at = vec![fit.law.parameters()];
-    // A mass that is hardly known is varied by no more than half of itself.
-    let step = sd.min(0.5 * mass);
-    let low = plan.solve_with_mass(mass - step, &at);
-    let high = plan.solve_with_mass(mass + step, &at);
-    let (Ok(low), Ok(high)) = (low, high) else {
-        fit.findings.push(Finding::MassLeftOut { mass, sd });
+/// Adds the uncertainty of a quantity of the bench to the intervals, by fits with it one
+/// standard deviation lower and higher; what that moves is kept.
+fn widen(
+    fit: &mut Fit,
+    (impact, rig, problem, options): (&Impact, &Rig, &LawProblem, &FitOptions),
+    (quantity, sd): (BenchQuantity, f64),
+    quantile: f64,
+) {
+    let value = quantity.value(rig);
+    // A quantity that is hardly known is varied by no more than half of itself.
+    let step = if value > 0.0 { sd.min(0.5 * value) } else { sd };
+    let mut near = problem.clone();
+    for (i, value) in fit.law.parameters().into_iter().enumerate() {
+        if near.free[i] {
+            near.values[i] = Some(value);
+        }
+    }
+    let bench = options.bench;
+    let options = FitOptions {
+        bench: BenchSd::default(),
+        intervals: IntervalOptions::default(),
+        ..*options
+    };
+    let refit = |step: f64| {
+        let (impact, rig) = bench.moved((impact, rig), quantity, step);
+        let fit = fit_impact(&impact, &rig, &near, &options).ok()?;
+        fit.converged.then_some(fit)
+    };
+    let (Some(low), Some(high)) = (refit(-step), refit(step)) else {
+        fit.findings.push(Finding::BenchLeftOut {
+            quantity: quantity.name(),
+            sd,
+            unit: quantity.unit(),
+        });
         return;
     };
-    let quantile = plan.quantile(fit.samples);
+    let all = |fit: &Fit| -> Vec<f64> {
+        let estimates = fit.parameters.iter().chain(&fit.nuisances);
+        estimates.map(|estimate| estimate.value).collect()
+    };
+    let moved = all(&high).into_iter().zip(all(&low));
+    let shifts: Vec<f64> = moved
+        .map(|(high, low)| 0.5 * (high - low) * sd / step)
+        .collect();
     let estimates = fit.parameters.iter_mut().chain(&mut fit.nuisances);
-    for (i, estimate) in estimates.enumerate() {
-        let by_mass = 0.5 * (high.free[i] - low.free[i]) * sd / step;
-        estimate.sd = estimate.sd.hypot(by_mass);
-        estimate.low = estimate.value - quantile * estimate.sd;
-        estimate.high = estimate.value + quantile * estimate.sd;
+    for (estimate, shift) in estimates.zip(&shifts) {
+        estimate.sd = estimate.sd.hypot(*shift);
+        let reach = |end: f64| (end - estimate.value).hypot(quantile * shift);
+        let (low, high) = (reach(estimate.low), reach(estimate.high));
+        (estimate.low, estimate.high) = (estimate.value - low, estimate.value + high);
     }
-    fit.findings.push(Finding::UncertainMass { mass, sd });
+    fit.findings.push(Finding::UncertainBench {
+        quantity: quantity.name(),
+        value,
+        sd,
+        unit: quantity.unit(),
+    });
+    fit.common.push(CommonShift {
+        quantity,
+        sd,
+        shifts,
+    });
 }

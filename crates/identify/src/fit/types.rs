@@ -4,6 +4,7 @@ use crate::finding::Finding;
 use crate::fit::identifiability::Direction;
 use crate::fit::interval::IntervalDetail;
 use crate::fit::uncertainty::RunsTest;
+use crate::rig::bench::BenchQuantity;
 use crate::rig::simulate::ImpactSummary;
 use crate::samples::Quantity;
 use windfall_contact::laws::kind::Law;
@@ -48,6 +49,17 @@ pub struct QuantityFit {
     pub runs: Option<RunsTest>,
 }
 
+/// What the uncertainty of one quantity of the bench moves: common to all impacts of the bench.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommonShift {
+    /// The quantity.
+    pub quantity: BenchQuantity,
+    /// Its standard uncertainty; SI.
+    pub sd: f64,
+    /// Change of each parameter, then of each nuisance, for one standard uncertainty more; SI.
+    pub shifts: Vec<f64>,
+}
+
 /// A law fitted to an impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
@@ -85,6 +97,8 @@ pub struct Fit {
     /// Combinations of parameters and nuisances, in their order, from the least to the
     /// best determined; empty where the covariance is singular.
     pub directions: Vec<Direction>,
+    /// What the uncertainties of the bench move; they are part of the deviations.
+    pub common: Vec<CommonShift>,
     /// How the intervals came about.
     pub intervals: IntervalDetail,
     /// Remarks.

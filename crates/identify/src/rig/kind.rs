@@ -28,8 +28,6 @@ pub struct Pendulum {
 pub struct Carriage {
     /// Mass, m; kg.
     pub mass: f64,
-    /// Standard uncertainty of the mass; kg. Zero when it is exact.
-    pub mass_sd: f64,
     /// Acceleration towards the fruit when there is no contact, a; m/s².
     pub driving_acceleration: f64,
 }

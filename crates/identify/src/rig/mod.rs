@@ -1,5 +1,6 @@
 //! Rigs, and the motion of an impactor under a force law.
 
+pub mod bench;
 pub mod contact_motion;
 pub mod contact_stop;
 pub mod contact_time;

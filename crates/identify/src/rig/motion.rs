@@ -165,7 +165,6 @@ mod tests {
     fn closed_form_carriage_is_newton() {
         let rig = Rig::Carriage(Carriage {
             mass: 0.5,
-            mass_sd: 0.0,
             driving_acceleration: 0.3,
         });
         let found = Motion::from(&rig).acceleration(0.01, 2.0, 4.0);

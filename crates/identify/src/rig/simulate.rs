@@ -66,7 +66,6 @@ pub fn simulate_impact(
 ) -> Result<ImpactSummary, Error> {
     let rig = Rig::Carriage(Carriage {
         mass,
-        mass_sd: 0.0,
         driving_acceleration,
     });
     simulate_rig(law, &rig, velocity, end)

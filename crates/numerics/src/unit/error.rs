@@ -75,6 +75,22 @@ pub enum UnitError {
         /// What was to be read.
         text: String,
     },
+    /// A value with an uncertainty that cannot be read.
+    #[error(
+        "\"{text}\": the uncertainty behind ± cannot be used, since {problem}; write it like \"0.505 ± 0.001 m\""
+    )]
+    BadUncertainty {
+        /// What was to be read.
+        text: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// An uncertainty where only a value is asked for.
+    #[error("\"{text}\": this takes no ±: write the value alone")]
+    NoUncertainty {
+        /// What was to be read.
+        text: String,
+    },
     /// A number alone, where its unit cannot be guessed.
     #[error("\"{text}\" has no unit: write it, such as \"{text} {expected}\"")]
     MissingUnit {

@@ -6,3 +6,4 @@ pub mod nearest_name;
 pub mod quantity;
 pub mod symbol;
 mod syntax;
+pub mod uncertain;

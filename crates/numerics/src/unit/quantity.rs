@@ -87,6 +87,10 @@ pub const LARGEST: f64 = 1e100;
 /// # Ok::<(), windfall_numerics::unit::quantity::UnitError>(())
 /// ```
 pub fn parse_as(text: &str, unit: &str) -> Result<f64, UnitError> {
+    if text.contains('±') {
+        let text = text.trim().into();
+        return Err(UnitError::NoUncertainty { text });
+    }
     let expected = parse_unit(unit)?;
     let (_, unit_start) = parse_number(text)?;
     let quantity = parse_quantity(text)?;

@@ -91,7 +91,9 @@ fn rank(
     figures: Option<&FigureFolder>,
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
-    let rig = find_rig(campaign)?;
+    let mut campaign = campaign.clone();
+    let rig = find_rig(&mut campaign)?;
+    let campaign = &campaign;
     let problems: Vec<LawProblem> = campaign
         .fit
         .laws

@@ -155,7 +155,6 @@ pub fn pendulum_event(request: &PendulumRequest) -> Result<Event, Error> {
 fn carriage(mass: &str, driving: &str) -> Result<Rig, Error> {
     Ok(Rig::Carriage(Carriage {
         mass: positive("--mass", mass, "kg")?,
-        mass_sd: 0.0,
         driving_acceleration: quantity("--driving-acceleration", driving, "m/s^2")?,
     }))
 }

@@ -1,0 +1,154 @@
+//! Quantities of the bench that are estimated over all impacts, before any law is fitted.
+
+use crate::error::CampaignError;
+use crate::impacts::mass::measured_of;
+use crate::result::bench::pooled;
+use crate::result::counted::excluded;
+use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
+use rayon::prelude::*;
+use windfall_files::error::Error;
+use windfall_identify::rig::bench::BenchQuantity;
+use windfall_signal::impact::Measured;
+use windfall_signal::recording::Quantity;
+use windfall_signal::uncertain::{Uncertain, weighted_mean};
+
+/// Deviations by which impacts may differ from what campaign.toml says with its uncertainty.
+const CONTRADICTS: f64 = 5.0;
+
+/// Estimates what `[fit] estimate` names, and puts it in the place of what campaign.toml says.
+///
+/// Newton's law tells gain and delay of the force beside the displacement in each impact, and
+/// no law of the fruit enters ([`windfall_signal::impact::Measured::force_gain`]). Over the
+/// impacts they are averaged by their deviations, without those that are far from the others;
+/// what campaign.toml gives with an uncertainty is averaged with them.
+///
+/// # Errors
+/// Fewer than five impacts tell a quantity, or they contradict what is given with an
+/// uncertainty.
+pub(crate) fn estimate_bench(campaign: &mut ImpactCampaign) -> Result<(), Error> {
+    let asked = std::mem::take(&mut campaign.bench.estimate);
+    if asked.is_empty() {
+        return Ok(());
+    }
+    let entries = campaign.shared.entries.par_iter();
+    let entries = entries.filter(|entry| excluded(entry).is_none());
+    let measured = entries.filter_map(|entry| measured_of(campaign, entry).ok());
+    let measured: Vec<Measured> = measured.collect();
+    for quantity in asked {
+        let (name, value, sd): (_, fn(&Measured) -> _, fn(&Measured) -> _) = match quantity {
+            BenchQuantity::ForceDelay => ("delay", |m| m.force_delay, |m| m.force_delay_sd),
+            _ => ("gain", |m| m.force_gain, |m| m.force_gain_sd),
+        };
+        let own = measured
+            .iter()
+            .filter_map(|own| Some((value(own)?, sd(own)?)));
+        let own = own.filter(|(_, sd): &(f64, f64)| *sd > 0.0);
+        let own: Vec<Uncertain> = own.map(|(value, sd)| Uncertain::new(value, sd)).collect();
+        let told = own.len();
+        let Some(found) = pooled(own) else {
+            return Err(Error::from(CampaignError::BenchUntold {
+                path: campaign.shared.directory.clone(),
+                quantity: quantity.name(),
+                what: name,
+                told,
+            }));
+        };
+        let value = with_prior(campaign, quantity, Uncertain::new(found.value, found.sd))?;
+        apply(campaign, quantity, value, found.impacts);
+    }
+    Ok(())
+}
+
+/// The mean of what impacts say of gain or delay, and of what campaign.toml says with an
+/// uncertainty.
+fn with_prior(
+    campaign: &ImpactCampaign,
+    quantity: BenchQuantity,
+    found: Uncertain,
+) -> Result<Uncertain, Error> {
+    let sd = campaign.bench.sd.of(quantity);
+    if sd == 0.0 {
+        return Ok(found);
+    }
+    // Gains are of the value that is told, delays beside it.
+    let (perfect, unit) = match quantity {
+        BenchQuantity::ForceDelay => (0.0, 1.0),
+        _ => (1.0, told(campaign, quantity)),
+    };
+    let prior = Uncertain::new(perfect, sd / unit);
+    if (found.value - perfect).abs() > CONTRADICTS * found.sd.hypot(prior.sd) {
+        let value = told(campaign, quantity);
+        let impacts = match quantity {
+            BenchQuantity::ForceDelay => value + found.value,
+            _ => value * found.value,
+        };
+        return Err(Error::from(CampaignError::BenchContradicted {
+            path: campaign.shared.directory.clone(),
+            quantity: quantity.name(),
+            unit: quantity.unit(),
+            told: [value, sd],
+            found: [impacts, found.sd * unit],
+        }));
+    }
+    let both = weighted_mean(&[prior, found]).unwrap_or(found);
+    // Two values that agree better than by chance are no better known.
+    let sd = 1.0 / (1.0 / prior.sd).hypot(1.0 / found.sd);
+    Ok(Uncertain::new(both.value, both.sd.max(sd)))
+}
+
+/// What campaign.toml says.
+fn told(campaign: &ImpactCampaign, quantity: BenchQuantity) -> f64 {
+    let mut plans = campaign.shared.files.channels.iter();
+    match (quantity, campaign.rig) {
+        (BenchQuantity::Inertia, RigPlan::Pendulum(rig)) => rig.inertia,
+        (
+            BenchQuantity::Mass,
+            RigPlan::Carriage {
+                mass: MassPlan::Given { value, .. },
+                ..
+            },
+        ) => value,
+        (BenchQuantity::ForceDelay, _) => plans
+            .find(|plan| plan.quantity == Quantity::Force)
+            .map_or(0.0, |plan| plan.delay),
+        _ => 1.0,
+    }
+}
+
+/// Puts an estimate in the place of what campaign.toml says.
+///
+/// * `found`: gain, 1; or delay beside that of campaign.toml, s
+fn apply(campaign: &mut ImpactCampaign, quantity: BenchQuantity, found: Uncertain, impacts: usize) {
+    let told = told(campaign, quantity);
+    let (value, sd) = match quantity {
+        BenchQuantity::ForceDelay => (told + found.value, found.sd),
+        _ => (told * found.value, told * found.sd),
+    };
+    let forces = campaign.shared.files.channels.iter_mut();
+    let mut forces = forces.filter(|plan| plan.quantity == Quantity::Force);
+    match (quantity, &mut campaign.rig) {
+        (BenchQuantity::Inertia, RigPlan::Pendulum(rig)) => rig.inertia = value,
+        (BenchQuantity::Mass, RigPlan::Carriage { mass, .. }) => {
+            *mass = MassPlan::Given { value, sd };
+        }
+        (BenchQuantity::ForceGain, _) => forces.for_each(|plan| plan.scale /= value),
+        (BenchQuantity::ForceDelay, _) => {
+            if let Some(plan) = forces.next() {
+                plan.delay = value;
+            }
+        }
+        _ => (),
+    }
+    let bench = &mut campaign.bench;
+    bench.sd = bench.sd.with(quantity, sd);
+    if quantity != BenchQuantity::ForceDelay {
+        bench.sd.tied = Some(quantity);
+    }
+    bench.found.push(BenchFound {
+        quantity,
+        value,
+        sd,
+        told,
+        impacts,
+    });
+}

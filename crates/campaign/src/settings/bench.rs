@@ -1,0 +1,107 @@
+//! What campaign.toml says of the bench: uncertainties, and what is estimated.
+
+use crate::settings::file::CampaignFile;
+use crate::settings::model::{BenchPlan, ChannelPlan, MassPlan, RigPlan};
+use windfall_files::error::Error;
+use windfall_files::text::toml_source::{TomlSource, refused};
+use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
+use windfall_signal::recording::Quantity;
+
+const KEY: (&str, &str) = ("[fit]", "estimate");
+
+/// Quantities that recordings can tell: one of the first three, and the last.
+pub const ESTIMABLE: [BenchQuantity; 4] = [
+    BenchQuantity::Inertia,
+    BenchQuantity::Mass,
+    BenchQuantity::ForceGain,
+    BenchQuantity::ForceDelay,
+];
+
+/// Uncertainties of rig and force, and `[fit] estimate`.
+///
+/// # Errors
+/// A quantity cannot be estimated on this rig, with these channels, or beside the others.
+pub fn bench_plan(
+    source: &TomlSource,
+    file: &CampaignFile,
+    (rig, sd): (&RigPlan, BenchSd),
+    channels: &[ChannelPlan],
+) -> Result<BenchPlan, Error> {
+    let has = |quantity| channels.iter().any(|plan| plan.quantity == quantity);
+    let force = channels
+        .iter()
+        .find(|plan| plan.quantity == Quantity::Force);
+    let mut sd = sd
+        .with(
+            BenchQuantity::ForceGain,
+            force.map_or(0.0, |plan| plan.scale_sd),
+        )
+        .with(
+            BenchQuantity::ForceDelay,
+            force.map_or(0.0, |plan| plan.delay_sd),
+        );
+    let turning = [Quantity::Angle, Quantity::EncoderCount, Quantity::PhaseA];
+    sd.turns = matches!(rig, RigPlan::Pendulum(_)) && turning.into_iter().any(has);
+    let mut estimate: Vec<BenchQuantity> = Vec::new();
+    for word in file.fit.estimate.iter().flatten() {
+        let wrong = |problem: String| refused(source, word, KEY, problem);
+        let mut all = ESTIMABLE.into_iter();
+        let Some(quantity) = all.find(|own| own.name() == word.get_ref()) else {
+            let names = ESTIMABLE.map(BenchQuantity::name).join(", ");
+            return Err(wrong(format!("expected one of {names}")));
+        };
+        if let Some(problem) = untold(quantity, rig, &estimate) {
+            return Err(wrong(problem));
+        }
+        if force.is_none() || !(sd.turns || has(Quantity::Displacement)) {
+            let problem =
+                "force and displacement together tell it, and one of them is not recorded";
+            return Err(wrong(problem.to_owned()));
+        }
+        if !estimate.contains(&quantity) {
+            estimate.push(quantity);
+        }
+    }
+    Ok(BenchPlan {
+        sd,
+        estimate,
+        found: Vec::new(),
+    })
+}
+
+/// Why a quantity cannot be told on a rig, beside those that are estimated already.
+fn untold(quantity: BenchQuantity, rig: &RigPlan, others: &[BenchQuantity]) -> Option<String> {
+    let pendulum = matches!(rig, RigPlan::Pendulum(_));
+    match quantity {
+        BenchQuantity::Inertia if !pendulum => {
+            return Some("a carriage has no inertia; its mass can be estimated".to_owned());
+        }
+        BenchQuantity::Mass if pendulum => {
+            let told = "the mass of a pendulum acts by gravity alone, and a contact does not tell \
+                        it; its inertia can be estimated";
+            return Some(told.to_owned());
+        }
+        BenchQuantity::Mass
+            if matches!(
+                rig,
+                RigPlan::Carriage {
+                    mass: MassPlan::FromImpulse,
+                    ..
+                }
+            ) =>
+        {
+            return Some("the mass is found from impulse already".to_owned());
+        }
+        _ => (),
+    }
+    let of_gain = |own: &BenchQuantity| *own != BenchQuantity::ForceDelay;
+    let other = others.iter().find(|own| of_gain(own) && **own != quantity);
+    let other = other.filter(|_| of_gain(&quantity))?;
+    Some(format!(
+        "force and displacement tell one number for {} and {}: estimate one, and give the other \
+         its uncertainty behind ±. A known weight on the force sensor tells the gain; a known \
+         mass on the moving body tells the inertia",
+        other.name(),
+        quantity.name()
+    ))
+}
