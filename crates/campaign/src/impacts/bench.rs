@@ -2,7 +2,7 @@
 
 use crate::error::CampaignError;
 use crate::impacts::mass::measured_of;
-use crate::result::bench::pooled;
+use crate::result::bench::{pooled, pooled_gain};
 use crate::result::counted::excluded;
 use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
 use rayon::prelude::*;
@@ -45,7 +45,11 @@ pub(crate) fn estimate_bench(campaign: &mut ImpactCampaign) -> Result<(), Error>
         let own = own.filter(|(_, sd): &(f64, f64)| *sd > 0.0);
         let own: Vec<Uncertain> = own.map(|(value, sd)| Uncertain::new(value, sd)).collect();
         let told = own.len();
-        let Some(found) = pooled(own) else {
+        let found = match quantity {
+            BenchQuantity::ForceDelay => pooled(own),
+            _ => pooled_gain(own),
+        };
+        let Some(found) = found else {
             return Err(Error::from(CampaignError::BenchUntold {
                 path: campaign.shared.directory.clone(),
                 quantity: quantity.name(),

@@ -14,6 +14,7 @@ use crate::recording::request::{RecordingRequest, campaign_of_file};
 use crate::result::bench::{bench_findings, pooled_bench};
 use crate::result::counted::mark_left_out;
 use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
+use crate::result::stacked::law_misfits;
 use crate::result::summary::{summarise, summarise_groups};
 use crate::settings::kind::CAMPAIGN_FILE;
 use crate::settings::model::{BenchFound, Campaign, ImpactCampaign, ImpactEntry};
@@ -278,7 +279,9 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let mut findings = rig.findings.clone();
     findings.extend(law_findings(campaign, &impacts));
     let bench = pooled_bench(&impacts);
-    findings.extend(bench_findings(&rig.rig, &bench, &impacts));
+    let of_bench = bench_findings(&rig.rig, &bench, &impacts);
+    let misfits = law_misfits(&impacts, !of_bench.is_empty());
+    findings.extend(of_bench.into_iter().chain(misfits));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));
     CampaignOutcome {

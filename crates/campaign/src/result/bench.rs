@@ -37,9 +37,26 @@ pub fn pooled_bench(impacts: &[ImpactOutcome]) -> Named<PooledOutcome> {
                 (sd > 0.0).then(|| Uncertain::new(value, sd))
             };
             let values: Vec<Uncertain> = own.iter().filter_map(of).collect();
-            Some((name.into(), pooled(values)?))
+            let found = match name {
+                "force_gain" => pooled_gain(values),
+                _ => pooled(values),
+            };
+            Some((name.into(), found?))
         });
     Named(pooled.collect())
+}
+
+/// [`pooled`] of gains, by way of their inverse. That is what is estimated without bias, with a
+/// deviation that does not depend on it: small gains would weigh more than large ones.
+pub(crate) fn pooled_gain(gains: Vec<Uncertain>) -> Option<PooledOutcome> {
+    let inverse = |value: f64, sd: f64| (1.0 / value, sd / (value * value));
+    let inverted = gains.into_iter().map(|own| {
+        let (value, sd) = inverse(own.value, own.sd);
+        Uncertain::new(value, sd)
+    });
+    let mean = pooled(inverted.collect())?;
+    let (value, sd) = inverse(mean.value, mean.sd);
+    Some(PooledOutcome { value, sd, ..mean })
 }
 
 /// A weighted mean without those that are far from the others; `None` of fewer than five.

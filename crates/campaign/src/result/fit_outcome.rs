@@ -146,6 +146,7 @@ fn residuals(fit: &Fit) -> Named<ResidualOutcome> {
         noise: q.noise,
         persistence: q.persistence,
         rms: q.rms_residual,
+        by_phase: q.by_phase,
         runs_z: q.runs.map(|runs| runs.z).filter(|z| z.is_finite()),
     };
     let quantities = fit.quantities.iter();

@@ -6,4 +6,5 @@ pub mod fit_outcome;
 pub mod interval_outcome;
 pub mod outcome;
 pub mod quantity;
+pub mod stacked;
 pub mod summary;

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use windfall_files::found::{EstimateOutcome, FailureOutcome, FindingOutcome, SpreadOutcome};
 use windfall_files::named::Named;
+use windfall_identify::fit::result::PHASES;
 
 /// How one quantity of the cost function fits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
@@ -27,6 +28,10 @@ pub struct ResidualOutcome {
     /// Runs test: standardised number of runs; far below 0 when the residuals
     /// are not random.
     pub runs_z: Option<f64>,
+    /// Mean residual over `rms` in each of eight equal parts of the contact; 1.
+    #[serde(default)]
+    #[schema(value_type = Vec<f64>)]
+    pub by_phase: [f64; PHASES],
 }
 
 /// One law fitted to one impact.

@@ -312,6 +312,7 @@ mod tests {
             derived_from: Named::of([("restitution", "signal".into())]),
             fitted: Named::default(),
             directions: Vec::new(),
+            common: Named::default(),
             intervals: crate::result::interval_outcome::IntervalOutcome::default(),
             findings: vec![FindingOutcome::new("x", "y")],
             left_out: Vec::new(),

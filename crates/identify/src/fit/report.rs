@@ -7,7 +7,7 @@ use crate::fit::identifiability::{directions, in_words, trade};
 use crate::fit::interval::{IntervalDetail, IntervalMethod, independent_draws, mixes};
 use crate::fit::plan::{Plan, nuisance_name, sample_count};
 use crate::fit::solve::Solution;
-use crate::fit::types::{Estimate, Fit, QuantityFit};
+use crate::fit::types::{Estimate, Fit, PHASES, QuantityFit};
 use crate::fit::uncertainty::{runs_test, standardised};
 use crate::rig::kind::Rig;
 use crate::rig::simulate::simulate_rig;
@@ -15,6 +15,28 @@ use crate::samples::Quantity;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::least_squares::Stop;
 use windfall_statistics::distribution::tail::t_upper_quantile;
+
+/// Means of residuals over their root mean square in equal parts of a contact; zero where there
+/// is no sample.
+///
+/// * `onset`: on the clock of `times`; s
+fn by_phase(times: &[f64], residuals: &[f64], (onset, duration): (f64, f64)) -> [f64; PHASES] {
+    let (mut sums, mut counts) = ([0.0; PHASES], [0.0; PHASES]);
+    let mut square = 0.0;
+    for (time, residual) in times.iter().zip(residuals) {
+        square += residual * residual;
+        let phase = (time - onset) / duration * PHASES as f64;
+        if (0.0..PHASES as f64).contains(&phase) {
+            sums[phase as usize] += residual;
+            counts[phase as usize] += 1.0;
+        }
+    }
+    let rms = (square / residuals.len().max(1) as f64).sqrt();
+    std::array::from_fn(|i| match counts[i] > 0.0 && rms > 0.0 {
+        true => sums[i] / counts[i] / rms,
+        false => 0.0,
+    })
+}
 
 /// Correlation above which two parameters of the law, and a parameter and a
 /// nuisance, are reported as inseparable. A stiffness always moves with the
@@ -50,7 +72,7 @@ impl Plan<'_> {
             samples,
             evaluations: solution.evaluations,
             converged: solution.stop == Stop::Converged,
-            quantities: self.quantity_fits(solution),
+            quantities: self.quantity_fits(solution, simulated.contact_duration),
             regression: self.regression_estimates(&law),
             simulated,
             velocity: solution.velocity,
@@ -161,7 +183,7 @@ impl Plan<'_> {
             .collect()
     }
 
-    fn quantity_fits(&self, solution: &Solution) -> Vec<QuantityFit> {
+    fn quantity_fits(&self, solution: &Solution, duration: f64) -> Vec<QuantityFit> {
         let mut out = Vec::new();
         for (g, group) in self.noise.groups.iter().enumerate() {
             for quantity in Quantity::ALL.into_iter().filter(|q| group.holds(*q)) {
@@ -176,6 +198,7 @@ impl Plan<'_> {
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
                     standardised: self.standardised_rms(g, quantity, residuals),
                     runs: runs_test(&standardised(group, quantity, residuals)),
+                    by_phase: by_phase(group.times(), residuals, (solution.onset, duration)),
                 });
             }
         }

@@ -10,7 +10,7 @@ use crate::rig::bench::{BenchQuantity, BenchSd};
 use crate::rig::kind::Rig;
 use windfall_signal::impact::Impact;
 
-pub use crate::fit::types::{CommonShift, Estimate, Fit, QuantityFit};
+pub use crate::fit::types::{CommonShift, Estimate, Fit, PHASES, QuantityFit};
 
 /// Fits `problem` to `impact` as measured on `rig`.
 ///

@@ -47,7 +47,13 @@ pub struct QuantityFit {
     pub standardised: f64,
     /// Runs test of the residuals, where there are enough.
     pub runs: Option<RunsTest>,
+    /// Mean residual, over its root mean square, in equal parts of the contact: what impacts
+    /// have in common stands out when they are averaged; 1.
+    pub by_phase: [f64; PHASES],
 }
+
+/// Parts of a contact in which residuals are averaged.
+pub const PHASES: usize = 8;
 
 /// What the uncertainty of one quantity of the bench moves: common to all impacts of the bench.
 #[derive(Clone, Debug, PartialEq)]
