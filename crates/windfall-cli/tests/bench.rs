@@ -82,3 +82,190 @@ fn recovers_a_force_that_is_late() {
     let codes: Vec<&str> = found.iter().map(|own| own.0.as_str()).collect();
     assert_eq!(codes, ["bench-delay"], "{found:?}");
 }
+
+/// Deviations of k and c, and what the bench adds to the mean of k.
+fn deviations(outcome: &Value) -> (f64, f64, Option<f64>) {
+    let own = &outcome["impacts"][0]["parameters"];
+    let sd = |name: &str| own[name]["sd"].as_f64().unwrap() / own[name]["value"].as_f64().unwrap();
+    let mean = &outcome["summary"]["k"];
+    let common = mean["common_sd"].as_f64();
+    (
+        sd("k"),
+        sd("c"),
+        common.map(|sd| sd / mean["mean"].as_f64().unwrap()),
+    )
+}
+
+#[test]
+fn closed_form_an_uncertain_inertia_is_in_every_interval_and_not_averaged_out() {
+    let folder = campaign();
+    let exact = fitted(folder.path());
+    assert_eq!(deviations(&exact).2, None);
+    tell(folder.path(), "kg m^2\"", "kg m^2 ± 2 %\"");
+    let outcome = fitted(folder.path());
+    let (k, c, common) = deviations(&outcome);
+    // The displacement is fitted far better than the force: k and c follow the inertia.
+    assert!(
+        (k - 0.02).abs() < 2e-3 && (c - 0.02).abs() < 2e-3,
+        "{k} {c}"
+    );
+    let common = common.unwrap();
+    assert!((common - 0.02).abs() < 1e-3, "{common}");
+    let (_, out, _) = windfall("fit campaign", folder.path());
+    assert!(
+        out.contains("moves all of them together"),
+        "{out}"
+    );
+    // The card's median of all fruit is no better known than the bench.
+    let (status, _, told) = windfall("fit campaign --card card.toml", folder.path());
+    assert_eq!(status, Some(0), "{told}");
+    let card: toml::Table =
+        toml::from_str(&std::fs::read_to_string(folder.path().join("card.toml")).unwrap()).unwrap();
+    let k = &card["parameters"]["k"];
+    let relative = k["sd"].as_float().unwrap() / k["value"].as_float().unwrap();
+    assert!(relative >= 0.019, "{relative}");
+}
+
+#[test]
+fn recovers_inertia_gain_and_delay_that_are_asked_for() {
+    let estimate = |folder: &Path, names: &str| {
+        tell(folder, "[fit]\n", &format!("[fit]\nestimate = [{names}]\n"));
+        fitted(folder)
+    };
+    let value = |outcome: &Value, name: &str| {
+        let own = &outcome["estimated"][name];
+        let of = |key: &str| own[key].as_f64().unwrap_or_else(|| panic!("{own}"));
+        (of("value"), of("sd"))
+    };
+    let folder = campaign();
+    tell(
+        folder.path(),
+        "inertia = \"0.01435",
+        "inertia = \"0.0150675",
+    );
+    tell(
+        folder.path(),
+        "[channels.force]\n",
+        "[channels.force]\ndelay = \"-40 us\"\n",
+    );
+    let outcome = estimate(folder.path(), "\"inertia\", \"force.delay\"");
+    let (inertia, sd) = value(&outcome, "inertia");
+    assert!(
+        (inertia - 0.01435).abs() < 4.0 * sd && sd < 1e-4,
+        "{inertia} {sd}"
+    );
+    let (delay, sd) = value(&outcome, "force.delay");
+    assert!(delay.abs() < 4.0 * sd && sd < 2e-5, "{delay} {sd}");
+    assert_eq!(said(&outcome), []);
+    // One recording of the campaign is fitted on the bench of all of them.
+    let raw = std::fs::read_dir(folder.path().join("campaign/raw")).unwrap();
+    let mut names: Vec<_> = raw.map(|file| file.unwrap().file_name()).collect();
+    names.sort();
+    let name = names[0].to_string_lossy().into_owned();
+    let (status, out, told) = windfall(
+        &format!("fit campaign/raw/{name} --format json"),
+        folder.path(),
+    );
+    assert_eq!(status, Some(0), "{told}");
+    let one: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(one["estimated"], outcome["estimated"]);
+    assert_eq!(
+        one["impacts"][0]["parameters"],
+        outcome["impacts"][0]["parameters"]
+    );
+    // What is given with an uncertainty is averaged with what the impacts say.
+    tell(folder.path(), "kg m^2\"", "kg m^2 ± 5 %\"");
+    let (both, narrower) = value(&fitted(folder.path()), "inertia");
+    assert!(
+        (both - inertia).abs() < 0.01 * inertia && narrower <= 7e-5,
+        "{both} {narrower}"
+    );
+}
+
+#[test]
+fn rejects_what_the_bench_cannot_tell() {
+    for (old, new, said) in [
+        ("kg m^2\"", "kg m^2 ± 0.0002\"", "has no unit"),
+        ("kg m^2\"", "kg m^2 ± -1 %\"", "is negative"),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"arm\"]\n",
+            "expected one of inertia",
+        ),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"mass\"]\n",
+            "its inertia can be estimated",
+        ),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"inertia\", \"force.gain\"]\n",
+            "tell one number for inertia and force.gain",
+        ),
+        (
+            "[contact]\n",
+            "[contact]\npre_trigger = \"2 ± 1 ms\"\n",
+            "takes no ±",
+        ),
+    ] {
+        let folder = campaign();
+        tell(folder.path(), old, new);
+        let (status, _, told) = windfall("fit campaign", folder.path());
+        assert_eq!(status, Some(2), "{new}: {told}");
+        assert!(
+            told.contains(said) && told.contains("campaign.toml, line"),
+            "{new}: {told}"
+        );
+    }
+    // A value that its own uncertainty keeps from what the impacts say.
+    let folder = campaign();
+    tell(
+        folder.path(),
+        "inertia = \"0.01435 kg m^2",
+        "inertia = \"0.0150675 ± 0.00001 kg m^2",
+    );
+    tell(
+        folder.path(),
+        "[fit]\n",
+        "[fit]\nestimate = [\"inertia\"]\n",
+    );
+    let (status, _, told) = windfall("fit campaign", folder.path());
+    assert_eq!(status, Some(2), "{told}");
+    assert!(
+        told.contains("campaign.toml says inertia") && told.contains("leave ± out"),
+        "{told}"
+    );
+    // Too few impacts.
+    let folder = campaign();
+    tell(
+        folder.path(),
+        "[fit]\n",
+        "[fit]\nestimate = [\"inertia\"]\n",
+    );
+    let path = folder.path().join("campaign/impacts.csv");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(
+        &path,
+        text.lines()
+            .take(4)
+            .map(|line| format!("{line}\n"))
+            .collect::<String>(),
+    )
+    .unwrap();
+    let (status, _, told) = windfall("fit campaign", folder.path());
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("at least 5 are needed"), "{told}");
+}
+
+#[test]
+fn recovers_a_law_that_is_not_that_of_the_fruit() {
+    let folder = campaign();
+    let fit = |law: &str| {
+        let line = format!("fit campaign --law {law} --format json");
+        let (_, out, told) = windfall(&line, folder.path());
+        let outcome: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{told}"));
+        outcome["findings"].to_string().contains("law-misfit")
+    };
+    assert!(!fit("kuwabara-kono"));
+    assert!(fit("tsuji"));
+}

@@ -10,7 +10,7 @@ use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::text::number::{plain, value_and_sd};
-use windfall_files::text::table::{page_tables, title_lines};
+use windfall_files::text::table::{page_tables, paragraph, title_lines};
 
 /// More impacts than this are shown as groups only.
 const LISTED_IMPACTS: usize = 40;
@@ -24,7 +24,7 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
     let _ = writeln!(text, "{}", counted_line(outcome));
     let _ = writeln!(text, "{}", mass_line(outcome));
     for line in bench_lines(outcome) {
-        let _ = writeln!(text, "{line}");
+        let _ = writeln!(text, "{}", paragraph(&line, 2));
     }
     let laws = laws_of(outcome);
     for law in &laws {
@@ -69,7 +69,7 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
         let table = parameter_table(&groups, &impacts);
         let _ = writeln!(text, "{table}");
         if let Some(line) = common_line(&groups) {
-            let _ = writeln!(text, "{line}");
+            let _ = writeln!(text, "{}", paragraph(&line, 2));
         }
     }
     text += &restitution_table(&impacts);
@@ -160,8 +160,8 @@ pub fn common_line(groups: &[&GroupOutcome]) -> Option<String> {
     let parts: Vec<String> = parts.collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "The bench's uncertainty moves all of them together, {}: no number of impacts makes \
-             that smaller.",
+            "What is uncertain of the bench moves all of them together, {}; no number of impacts \
+             makes that smaller.",
             parts.join(", ")
         )
     })
