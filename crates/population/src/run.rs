@@ -10,11 +10,14 @@ use rayon::prelude::*;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use windfall_campaign::impacts::fit::{impacts_left_out, law_problem};
+use windfall_campaign::impacts::card::add_outer;
+use windfall_campaign::impacts::fit::{impacts_and_left_out, law_problem};
 use windfall_campaign::impacts::mass::{RigFound, find_rig};
 use windfall_campaign::pipeline::evaluate::failure;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
+use windfall_campaign::result::outcome::ImpactOutcome;
+use windfall_campaign::result::summary::common_moves;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
 use windfall_contact::expression::LawExpression;
@@ -94,7 +97,7 @@ fn estimate(
     let problem = law_problem(law, &campaign.fit.free);
     let mut first = campaign.clone();
     first.fit.laws.truncate(1);
-    let mut failed = impacts_left_out(&first, &rig, progress)?;
+    let (impacts, mut failed) = impacts_and_left_out(&first, &rig, progress)?;
     let left_out: BTreeSet<String> = failed.iter().map(|own| own.id.clone()).collect();
     let entries = campaign.shared.entries.iter();
     first.shared.entries = entries
@@ -130,7 +133,7 @@ fn estimate(
         ..PopulationOptions::default()
     };
     let subject = |source| Error::identify(format!("population of {}", law.kind.name()), source);
-    let fit = fit_population(&data, &starts, &expand, &options).map_err(subject)?;
+    let mut fit = fit_population(&data, &starts, &expand, &options).map_err(subject)?;
     let stages = two_stage(&data, &starts, options.confidence).map_err(subject)?;
     let posterior = match posterior {
         false => None,
@@ -147,6 +150,7 @@ fn estimate(
             Some(found.map_err(subject)?)
         }
     };
+    add_bench(&mut fit, &impacts, &varying);
     let mut findings = findings(campaign, &rig, &fit, &specimens);
     let remarks = posterior.iter().flat_map(|posterior| posterior.findings());
     findings.extend(remarks.map(|finding| population_finding(&finding)));
@@ -173,6 +177,31 @@ fn estimate(
         findings,
         failed,
     })
+}
+
+/// Adds what is uncertain of the bench to the medians of all fruit, undivided.
+fn add_bench(fit: &mut PopulationFit, impacts: &[ImpactOutcome], varying: &[Varying]) {
+    let counted: Vec<&ImpactOutcome> = impacts.iter().filter(|own| own.counts()).collect();
+    let of = |own: &Varying| (own.name.clone(), own.logarithmic);
+    let names: Vec<(String, bool)> = varying.iter().map(of).collect();
+    let names: Vec<(&str, bool)> = names.iter().map(|own| (own.0.as_str(), own.1)).collect();
+    for moved in common_moves(&counted, &names) {
+        let of_effects = fit.effects.iter().map(|effect| {
+            let median = effect.covariate.is_none();
+            let place = varying.iter().position(|own| own.name == effect.parameter);
+            place.filter(|_| median).map_or(0.0, |place| moved[place])
+        });
+        let of_effects: Vec<f64> = of_effects.collect();
+        add_outer(&mut fit.effects_covariance, &of_effects);
+        for (effect, moved) in fit.effects.iter_mut().zip(of_effects) {
+            let wider = effect.se.hypot(moved) / effect.se;
+            if wider.is_finite() {
+                effect.se *= wider;
+                effect.low = effect.value - (effect.value - effect.low) * wider;
+                effect.high = effect.value + (effect.high - effect.value) * wider;
+            }
+        }
+    }
 }
 
 /// The likelihoods of all impacts that have one, and why the others have none.

@@ -112,10 +112,7 @@ fn closed_form_an_uncertain_inertia_is_in_every_interval_and_not_averaged_out() 
     let common = common.unwrap();
     assert!((common - 0.02).abs() < 1e-3, "{common}");
     let (_, out, _) = windfall("fit campaign", folder.path());
-    assert!(
-        out.contains("moves all of them together"),
-        "{out}"
-    );
+    assert!(out.contains("moves all of them together"), "{out}");
     // The card's median of all fruit is no better known than the bench.
     let (status, _, told) = windfall("fit campaign --card card.toml", folder.path());
     assert_eq!(status, Some(0), "{told}");
@@ -268,4 +265,23 @@ fn recovers_a_law_that_is_not_that_of_the_fruit() {
     };
     assert!(!fit("kuwabara-kono"));
     assert!(fit("tsuji"));
+}
+
+#[test]
+fn closed_form_medians_of_a_population_are_no_better_known_than_the_bench() {
+    let folder = campaign();
+    let half_width = || {
+        let (status, out, told) = windfall("population campaign --format json", folder.path());
+        assert_eq!(status, Some(0), "{told}");
+        let outcome: Value = serde_json::from_str(&out).unwrap();
+        let median = &outcome["parameters"][0]["median"];
+        let of = |key: &str| median[key].as_f64().unwrap_or_else(|| panic!("{median}"));
+        ((of("high") / of("low")).ln() / 2.0, of("value"))
+    };
+    let (exact, value) = half_width();
+    tell(folder.path(), "kg m^2\"", "kg m^2 ± 2 %\"");
+    let (uncertain, again) = half_width();
+    assert!((again / value - 1.0).abs() < 1e-9, "{value} {again}");
+    // Two per cent by nearly two deviations.
+    assert!(exact < 0.01 && uncertain > 0.038, "{exact} {uncertain}");
 }

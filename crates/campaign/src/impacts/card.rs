@@ -4,6 +4,7 @@
 use crate::impacts::two_stage::{Estimates, Population, two_stage};
 use crate::result::counted::reasons_counted;
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
+use crate::result::summary::common_moves;
 use crate::settings::model::{Campaign, ImpactCampaign, RigPlan};
 use std::collections::BTreeMap;
 use windfall_cards::law_card::{
@@ -120,28 +121,22 @@ fn add_common(
     estimates: &Estimates,
     impacts: &[&ImpactOutcome],
 ) -> bool {
-    let quantities = impacts.iter().flat_map(|impact| &impact.common.0);
-    let mut quantities: Vec<&str> = quantities.map(|(name, _)| name.as_str()).collect();
-    quantities.sort_unstable();
-    quantities.dedup();
-    for quantity in &quantities {
-        let moved = estimates.names.iter().zip(&estimates.logarithmic);
-        let moved = moved.map(|(name, logarithmic)| {
-            let all = impacts.iter().filter_map(|impact| {
-                let shift = *impact.common.get(quantity)?.get(name)?;
-                let value = impact.parameters.get(name)?.value;
-                Some(if *logarithmic { shift / value } else { shift })
-            });
-            all.sum::<f64>() / impacts.len() as f64
-        });
-        let moved: Vec<f64> = moved.collect();
-        for (row, by_row) in covariance.iter_mut().zip(&moved) {
-            for (cell, by_column) in row.iter_mut().zip(&moved) {
-                *cell += by_row * by_column;
-            }
+    let names = estimates.names.iter().map(String::as_str);
+    let parameters: Vec<(&str, bool)> = names.zip(estimates.logarithmic.iter().copied()).collect();
+    let moves = common_moves(impacts, &parameters);
+    for moved in &moves {
+        add_outer(covariance, moved);
+    }
+    !moves.is_empty()
+}
+
+/// Adds v vᵀ to a matrix.
+pub fn add_outer(matrix: &mut [Vec<f64>], v: &[f64]) {
+    for (row, by_row) in matrix.iter_mut().zip(v) {
+        for (cell, by_column) in row.iter_mut().zip(v) {
+            *cell += by_row * by_column;
         }
     }
-    !quantities.is_empty()
 }
 
 /// What was estimated on each impact, by fruit; positive scales as logarithms.

@@ -86,21 +86,22 @@ impl Evaluation for Fits<'_> {
     }
 }
 
-/// The impacts of a campaign that do not count under any of its laws, with the reasons.
-/// Nothing is stored.
+/// The impacts of a campaign as they are fitted, and those that do not count under any of its
+/// laws, with the reasons. Nothing is stored.
 ///
 /// # Errors
 /// `progress` stopped the work.
-pub fn impacts_left_out(
+pub fn impacts_and_left_out(
     campaign: &ImpactCampaign,
     rig: &RigFound,
     progress: Progress,
-) -> Result<Vec<FailureOutcome>, Error> {
+) -> Result<(Vec<ImpactOutcome>, Vec<FailureOutcome>), Error> {
     let evaluated = evaluate(&Fits { campaign, rig }, None, progress)?;
     let items = evaluated.items.into_iter();
     let mut impacts: Vec<ImpactOutcome> = items.map(|(_, impact)| impact).collect();
     let shared = &campaign.shared;
-    Ok(left_out_under_all_laws(shared, &rig.rig, &mut impacts))
+    let left_out = left_out_under_all_laws(shared, &rig.rig, &mut impacts);
+    Ok((impacts, left_out))
 }
 
 /// One law on one impact that has been cut out, with the options of its campaign.

@@ -17,17 +17,29 @@ pub fn summarise_groups(impacts: &[ImpactOutcome]) -> Vec<GroupOutcome> {
     groups.collect()
 }
 
+/// What one standard uncertainty of each quantity of the bench moves on average, of parameters
+/// or of their logarithms: the same in all impacts. A row for each quantity.
+pub fn common_moves(impacts: &[&ImpactOutcome], parameters: &[(&str, bool)]) -> Vec<Vec<f64>> {
+    let quantities = impacts.iter().flat_map(|impact| &impact.common.0);
+    let quantities = quantities.map(|(name, _)| name.as_str()).unique();
+    let mean = |quantity: &str, (name, logarithmic): (&str, bool)| {
+        let all = impacts.iter().filter_map(|impact| {
+            let shift = *impact.common.get(quantity)?.get(name)?;
+            let value = impact.parameters.get(name)?.value;
+            Some(if logarithmic { shift / value } else { shift })
+        });
+        all.sum::<f64>() / impacts.len() as f64
+    };
+    let row = |quantity: &str| parameters.iter().map(|own| mean(quantity, *own)).collect();
+    quantities.map(row).collect()
+}
+
 /// What of the bench's uncertainty the mean of a parameter carries: the mean of what each
 /// quantity moves, over the quantities in squares.
 fn common_sd(impacts: &[&ImpactOutcome], parameter: &str) -> Option<f64> {
-    let all = impacts.iter().flat_map(|impact| &impact.common.0);
-    let moved = all.filter_map(|(quantity, moved)| Some((quantity, *moved.get(parameter)?)));
-    let by_quantity = grouped(moved);
-    let means = by_quantity
-        .iter()
-        .map(|(_, moved)| moved.iter().sum::<f64>() / moved.len() as f64);
-    let square: f64 = means.map(|mean| mean * mean).sum();
-    (!by_quantity.is_empty()).then(|| square.sqrt())
+    let moves = common_moves(impacts, &[(parameter, false)]);
+    let square: f64 = moves.iter().map(|own| own[0] * own[0]).sum();
+    (!moves.is_empty()).then(|| square.sqrt())
 }
 
 /// Spread of parameters and derived quantities over those of some impacts of one law that

@@ -8,6 +8,7 @@ export interface AlongOutcome { quantity: string; known: MeasuredValue; value: n
 export interface AnovaOutcome { term: string; ss: number | null; df: number; f: number; p: number; }
 export type AnyOutcome = CampaignOutcome | MeasuredOutcome;
 export type AnyRegressOutcome = RegressOutcome | MixedOutcome;
+export interface BenchOutcome { value: number; sd: number; unit: string; told: number; impacts: number; }
 export interface Bounds { low: [number, number, number]; high: [number, number, number]; }
 export interface BoxCoxOutcome { lambda: number; low: number | null; high: number | null; }
 export interface BruiseOutcome { limits: LimitOutcome[]; mean_largest: number; places: PlaceOutcome[]; }
@@ -26,7 +27,8 @@ export interface CampaignEntry {
   id: string; title: string; kind: string | null; recordings: number; run: RunView | null; problem: string | null;
 }
 export interface CampaignOutcome {
-  windfall: string; campaign: string; simulated: string | null; effective_mass: MassOutcome; status: StatusOutcome;
+  windfall: string; campaign: string; simulated: string | null; effective_mass: MassOutcome;
+  bench: Record<string, PooledOutcome>; estimated: Record<string, BenchOutcome>; status: StatusOutcome;
   impacts: ImpactOutcome[]; failed: FailureOutcome[]; summary: Record<string, SpreadOutcome>; groups: GroupOutcome[];
   findings: FindingOutcome[];
 }
@@ -156,8 +158,9 @@ export interface ImpactOutcome {
   correlations: Record<string, number>; cost: number; samples: number; evaluations: number; converged: boolean;
   residual_norm: number; residuals: Record<string, ResidualOutcome>; regression: Record<string, EstimateOutcome>;
   derived: Record<string, null | number>; derived_sd: Record<string, number>; derived_from: Record<string, string>;
-  fitted: Record<string, null | number>; directions: Record<string, number>[]; intervals: IntervalOutcome;
-  findings: FindingOutcome[]; left_out: FindingOutcome[];
+  fitted: Record<string, null | number>; directions: Record<string, number>[];
+  common: Record<string, Record<string, number>>; intervals: IntervalOutcome; findings: FindingOutcome[];
+  left_out: FindingOutcome[];
 }
 export interface ImpactsGiven { impacts: ImpactGiven[]; }
 export interface InflationOutcome { term: string; df: number; factor: number; }
@@ -251,6 +254,7 @@ export interface PartnerOutcome {
   largest_static_force: number; peak_force: number[]; impact_speed: number[]; absorbed_energy: number[];
 }
 export interface PlaceOutcome { name: string; bruises: number; fruit: number; largest: number; }
+export interface PooledOutcome { value: number; sd: number; impacts: number; chi_square: number; }
 export interface Population {
   parameters: string[]; logarithmic: boolean[]; median: number[]; median_covariance: number[][]; between: number[][];
   within: number[][]; covariates: CovariateEffect[]; fruits: number; impacts: number; method: string;
@@ -309,6 +313,7 @@ export type RegressOutcome = QualityOutcome & ({
 export interface ReportFiles { page: string; files: string[]; impacts: number; failed: number; }
 export interface ResidualOutcome {
   samples: number; weight: number; noise: number; persistence: number; rms: number; runs_z: number | null;
+  by_phase: number[];
 }
 export interface ResponseGiven { name: string; model: string; }
 export interface ResponseMap { response: string; map: ContourMap; errors: number[]; }
@@ -344,6 +349,7 @@ export interface ShownMotion { time: number[]; displacement: number[]; rate: num
 export interface ShownSamples { time: number[]; value: number[]; }
 export interface SpreadOutcome {
   mean: number; sd: number | null; n: number; cv: number | null; median: number; robust_sd: number | null;
+  common_sd: number | null;
 }
 export interface StartOutcome { law: string; rule: string; hertz_stiffness: number | null; }
 export interface StatusOutcome { fitted: number; stored: number; failed: number; up_to_date: boolean; }
