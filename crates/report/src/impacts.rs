@@ -9,6 +9,7 @@ use windfall_campaign::impacts::figure_parameters::{
 use windfall_campaign::impacts::figure_posterior::figure_of_posterior;
 use windfall_campaign::impacts::figure_profiles::figure_of_profiles;
 use windfall_campaign::impacts::figure_residuals::figure_of_residuals;
+use windfall_campaign::impacts::figure_stacked::figure_of_stacked;
 use windfall_campaign::impacts::groups::{
     SOURCES, derived_cells, groups_of, heading_of, law_cells, parameter_cells,
 };
@@ -55,7 +56,8 @@ pub fn sections_of_campaign(
         let pairs = figure_of_pairs(law, &impacts).into_iter();
         let figures = pairs
             .chain(over)
-            .chain(figure_of_predictions(law, &impacts));
+            .chain(figure_of_predictions(law, &impacts))
+            .chain(figure_of_stacked(law, &impacts));
         sections.push(Section {
             figures: figures.collect(),
             ..Section::of_words(&format!("Figures: {law}"), Vec::new())

@@ -10,6 +10,7 @@ pub mod figure_parameters;
 pub mod figure_posterior;
 pub mod figure_profiles;
 pub mod figure_residuals;
+pub mod figure_stacked;
 pub mod findings;
 pub mod fit;
 pub mod groups;
