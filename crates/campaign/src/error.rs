@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use windfall_files::error::{Fault, Place};
+use windfall_files::text::number::plain;
 
 /// What can be wrong with a campaign and its recordings.
 #[derive(Debug, thiserror::Error)]
@@ -63,9 +64,9 @@ pub enum CampaignError {
     },
     /// Impacts that contradict what is given with an uncertainty.
     #[error(
-        "{path}: [fit] estimate: campaign.toml says {quantity} = {:.4e} ± {:.1e} {unit}, and the \
-         impacts say {:.4e} ± {:.1e}: give it the uncertainty that it really has, or leave ± out \
-         to take what the impacts say", told[0], told[1], found[0], found[1], path = path.display()
+        "{path}: [fit] estimate: campaign.toml says {quantity} = {} ± {} {unit}, and the \
+         impacts say {} ± {}: give it the uncertainty that it really has, or leave ± out \
+         to take what the impacts say", plain(told[0]), plain(told[1]), plain(found[0]), plain(found[1]), path = path.display()
     )]
     BenchContradicted {
         /// The campaign directory.

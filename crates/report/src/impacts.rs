@@ -15,7 +15,8 @@ use windfall_campaign::impacts::groups::{
 };
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::impacts::text::{
-    bench_lines, counted_line, derived_cell, laws_of, mass_line, own_codes, shared_codes,
+    bench_lines, common_line, counted_line, derived_cell, laws_of, mass_line, own_codes,
+    shared_codes,
 };
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
@@ -112,6 +113,11 @@ fn results(outcome: &CampaignOutcome) -> Section {
             [counted_line(outcome), mass_line(outcome)]
                 .into_iter()
                 .chain(bench_lines(outcome))
+                .chain(
+                    laws_of(outcome)
+                        .first()
+                        .and_then(|law| common_line(&groups_of(outcome, law))),
+                )
                 .map(|line| format!("{line}."))
                 .collect(),
         )

@@ -282,6 +282,7 @@ fn measure(
             .as_ref()
             .and_then(|track| largest_displacement(&track.times, &track.values, place)),
         impulse: impulse.map(|j| j.0),
+        resolution: resolution(signals, place, before.map(|v| v.value)),
         impact_velocity_sd: before.map(|v| v.sd),
         rebound_velocity_sd: after.map(|v| v.sd),
         touch_velocity_sd: touch
@@ -294,6 +295,29 @@ fn measure(
         Some(mass) => with_energies(measured, mass),
         None => measured,
     }
+}
+
+/// Longest time between samples or counts, over the contact's duration.
+fn resolution(signals: &Signals, place: &Surroundings, velocity: Option<f64>) -> Option<f64> {
+    let tracks = [
+        &signals.force,
+        &signals.displacement,
+        &signals.rate,
+        &signals.acceleration,
+    ];
+    let between = tracks
+        .into_iter()
+        .flatten()
+        .map(|track| mean_interval(&track.times));
+    let counted = signals
+        .displacement
+        .as_ref()
+        .and_then(|track| track.quantum);
+    let count = counted
+        .zip(velocity)
+        .map(|(quantum, velocity)| quantum / velocity.abs());
+    let longest = between.chain(count).reduce(f64::max)?;
+    Some(longest / place.duration())
 }
 
 /// Velocity next to the contact, from displacement or else from a measured rate.

@@ -68,6 +68,9 @@ pub struct Measured {
     pub motion_misfit: Option<f64>,
     /// The part of that misfit that the noise of the displacement, or its steps, explains; m.
     pub motion_noise: Option<f64>,
+    /// The longest of the times between samples, and between counts of the displacement at the
+    /// impact velocity, as a part of the contact; 1.
+    pub resolution: Option<f64>,
     /// Standard uncertainty of the gain, from scatter; 1.
     pub force_gain_sd: Option<f64>,
     /// Standard uncertainty of the delay, from scatter; s.

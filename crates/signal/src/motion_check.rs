@@ -87,7 +87,8 @@ pub(crate) fn check_motion(
             return None;
         }
         let shaken = shaken(&fit, times, row, force, mass);
-        let sd = |i: usize| fit.deviations[i].hypot(shaken[i]);
+        // The noise of the force enters by way of what the force is found to do.
+        let sd = |i: usize| fit.deviations[i].hypot(inverse_gain * shaken[i]);
         let step = product / inverse_gain;
         delay += step.clamp(-0.5 * place.duration(), 0.5 * place.duration());
         found = Some(MotionCheck {

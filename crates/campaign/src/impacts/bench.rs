@@ -2,7 +2,7 @@
 
 use crate::error::CampaignError;
 use crate::impacts::mass::measured_of;
-use crate::result::bench::{pooled, pooled_gain};
+use crate::result::bench::pooled;
 use crate::result::counted::excluded;
 use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use windfall_files::error::Error;
 use windfall_identify::rig::bench::BenchQuantity;
 use windfall_signal::impact::Measured;
 use windfall_signal::recording::Quantity;
-use windfall_signal::uncertain::{Uncertain, weighted_mean};
+use windfall_signal::uncertain::Uncertain;
 
 /// Deviations by which impacts may differ from what campaign.toml says with its uncertainty.
 const CONTRADICTS: f64 = 5.0;
@@ -35,20 +35,21 @@ pub(crate) fn estimate_bench(campaign: &mut ImpactCampaign) -> Result<(), Error>
     let measured = entries.filter_map(|entry| measured_of(campaign, entry).ok());
     let measured: Vec<Measured> = measured.collect();
     for quantity in asked {
-        let (name, value, sd): (_, fn(&Measured) -> _, fn(&Measured) -> _) = match quantity {
-            BenchQuantity::ForceDelay => ("delay", |m| m.force_delay, |m| m.force_delay_sd),
-            _ => ("gain", |m| m.force_gain, |m| m.force_gain_sd),
+        let (name, pooled_name) = match quantity {
+            BenchQuantity::ForceDelay => ("delay", "force_delay"),
+            _ => ("gain", "force_gain"),
         };
-        let own = measured
-            .iter()
-            .filter_map(|own| Some((value(own)?, sd(own)?)));
-        let own = own.filter(|(_, sd): &(f64, f64)| *sd > 0.0);
-        let own: Vec<Uncertain> = own.map(|(value, sd)| Uncertain::new(value, sd)).collect();
+        let of = |own: &Measured| {
+            let (value, sd) = match quantity {
+                BenchQuantity::ForceDelay => (own.force_delay?, own.force_delay_sd?),
+                _ => (own.force_gain?, own.force_gain_sd?),
+            };
+            let sharpness = (own.resolution?, own.contact_duration?);
+            (sd > 0.0).then(|| (Uncertain::new(value, sd), sharpness))
+        };
+        let own: Vec<_> = measured.iter().filter_map(of).collect();
         let told = own.len();
-        let found = match quantity {
-            BenchQuantity::ForceDelay => pooled(own),
-            _ => pooled_gain(own),
-        };
+        let found = pooled(pooled_name, own);
         let Some(found) = found else {
             return Err(Error::from(CampaignError::BenchUntold {
                 path: campaign.shared.directory.clone(),
@@ -94,10 +95,10 @@ fn with_prior(
             found: [impacts, found.sd * unit],
         }));
     }
-    let both = weighted_mean(&[prior, found]).unwrap_or(found);
-    // Two values that agree better than by chance are no better known.
-    let sd = 1.0 / (1.0 / prior.sd).hypot(1.0 / found.sd);
-    Ok(Uncertain::new(both.value, both.sd.max(sd)))
+    let weights = [prior, found].map(|own| 1.0 / (own.sd * own.sd));
+    let total = weights[0] + weights[1];
+    let mean = (weights[0] * prior.value + weights[1] * found.value) / total;
+    Ok(Uncertain::new(mean, 1.0 / total.sqrt()))
 }
 
 /// What campaign.toml says.

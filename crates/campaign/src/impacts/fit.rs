@@ -120,7 +120,14 @@ pub fn fit_law(
     options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
     let fit = fit_impact(impact, rig, &problem, &options)
         .map_err(|source| Error::identify(law.kind.name(), source))?;
-    let mut outcome = impact_outcome(entry, impact, findings, &fit, &problem, rig);
+    let mut outcome = impact_outcome(
+        entry,
+        impact,
+        findings,
+        &fit,
+        &problem,
+        (rig, &options.bench),
+    );
     add_angles(campaign, entry, &mut outcome)?;
     Ok(outcome)
 }

@@ -39,6 +39,10 @@ pub fn find_rig(campaign: &mut ImpactCampaign) -> Result<RigFound, Error> {
     let bench = &mut campaign.bench.sd;
     if matches!(found.rig, Rig::Carriage(_)) {
         *bench = bench.with(BenchQuantity::Mass, found.mass.sd);
+        // Of an impulse that reads 1 % more follows a mass that is 1 % larger.
+        if found.mass.impacts > 0 {
+            bench.tied = Some(BenchQuantity::Mass);
+        }
     }
     campaign.fit.options.bench = *bench;
     Ok(found)

@@ -11,7 +11,7 @@ use crate::recording::digests::Digests;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
-use crate::result::bench::{bench_findings, pooled_bench};
+use crate::result::bench::{bench_findings, far_estimates, pooled_bench};
 use crate::result::counted::mark_left_out;
 use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::stacked::law_misfits;
@@ -279,9 +279,11 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let mut findings = rig.findings.clone();
     findings.extend(law_findings(campaign, &impacts));
     let bench = pooled_bench(&impacts);
-    let of_bench = bench_findings(&rig.rig, &bench, &impacts);
+    let of_bench = bench_findings(&rig.rig, &campaign.bench.sd, &bench);
     let misfits = law_misfits(&impacts, !of_bench.is_empty());
-    findings.extend(of_bench.into_iter().chain(misfits));
+    let estimated = estimated(campaign);
+    let far = far_estimates(&estimated, &impacts);
+    findings.extend(of_bench.into_iter().chain(far).chain(misfits));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));
     CampaignOutcome {
@@ -290,7 +292,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         simulated: campaign.shared.simulated.clone(),
         effective_mass: rig.mass,
         bench,
-        estimated: estimated(campaign),
+        estimated,
         status: evaluated.status,
         impacts,
         failed: std::mem::take(&mut evaluated.failed),

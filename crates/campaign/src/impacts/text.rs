@@ -126,13 +126,16 @@ pub fn mass_line(outcome: &CampaignOutcome) -> String {
 /// all impacts.
 pub fn bench_lines(outcome: &CampaignOutcome) -> Vec<String> {
     let estimated = outcome.estimated.0.iter().map(|(name, own)| {
-        let unit = if own.unit == "1" { "" } else { " " };
-        let unit = format!("{unit}{}", own.unit.trim_start_matches('1'));
+        let (factor, unit) = match own.unit.as_str() {
+            "1" => (1.0, String::new()),
+            "s" => (1e6, " µs".to_owned()),
+            unit => (1.0, format!(" {unit}")),
+        };
         format!(
-            "Estimated from {} impacts: {name} = {}{unit} ({} in campaign.toml)",
+            "Estimated from {} impacts: {name} = {}{unit} (campaign.toml: {})",
             own.impacts,
-            value_and_sd(own.value, Some(own.sd)),
-            plain(own.told)
+            value_and_sd(factor * own.value, Some(factor * own.sd)),
+            plain(factor * own.told)
         )
     });
     let shown = |name: &str, factor: f64| {
@@ -140,8 +143,11 @@ pub fn bench_lines(outcome: &CampaignOutcome) -> Vec<String> {
         Some(value_and_sd(own.value * factor, Some(own.sd * factor)))
     };
     let gain = shown("force_gain", 1.0).map(|gain| format!("is {gain} times mass × acceleration"));
-    let delay = shown("force_delay", 1e6);
-    let delay = delay.map(|delay| format!("comes {delay} µs after the displacement"));
+    let delay = outcome.bench.get("force_delay").map(|own| {
+        let delay = value_and_sd(1e6 * own.value.abs(), Some(1e6 * own.sd));
+        let side = if own.value < 0.0 { "before" } else { "after" };
+        format!("comes {delay} µs {side} the displacement")
+    });
     let told = gain.into_iter().chain(delay).join(" and ");
     let pooled = outcome.bench.0.first().map(|(_, own)| {
         let impacts = own.impacts;
@@ -161,7 +167,7 @@ pub fn common_line(groups: &[&GroupOutcome]) -> Option<String> {
     (!parts.is_empty()).then(|| {
         format!(
             "What is uncertain of the bench moves all of them together, {}; no number of impacts \
-             makes that smaller.",
+             makes that smaller",
             parts.join(", ")
         )
     })

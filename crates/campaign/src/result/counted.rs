@@ -25,7 +25,7 @@ const NO_ESTIMATES: [&str; 7] = [
 ];
 
 /// Deviations by which a quantity must pass its limit.
-const DEVIATIONS: f64 = 3.0;
+pub(crate) const DEVIATIONS: f64 = 3.0;
 /// Part of a quantity that it may pass its limit by, whatever its deviation; 1.
 const SLACK: f64 = 0.05;
 /// Largest ratio of impulse to change of momentum, or its inverse, that a bench whose
@@ -33,7 +33,7 @@ const SLACK: f64 = 0.05;
 const IMPULSE_RATIO: f64 = 1.25;
 /// Logarithm by which a delay between force and displacement shifts the stiffness, for each
 /// part of the contact's duration; 1.
-pub(crate) const SHIFT_OF_DELAY: f64 = 10.0;
+const SHIFT_OF_DELAY: f64 = 10.0;
 /// Largest shift of the stiffness, as a logarithm, that delay and gain of the force may cause;
 /// 1.
 const SHIFT: f64 = 0.15;

@@ -9,6 +9,7 @@ use windfall_files::found::{EstimateOutcome, FindingOutcome};
 use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::{CommonShift, Estimate, Fit, QuantityFit};
+use windfall_identify::rig::bench::BenchSd;
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Measured};
@@ -20,14 +21,22 @@ pub fn impact_outcome(
     signal_findings: &[Finding],
     fit: &Fit,
     problem: &LawProblem,
-    rig: &Rig,
+    (rig, bench): (&Rig, &BenchSd),
 ) -> ImpactOutcome {
     let mut fitted = fitted_values(&FittedMotion {
         summary: &fit.simulated,
         velocity: fit.velocity,
         mass: rig.effective_mass(),
     });
-    let (derived, derived_sd, derived_from) = derived_values(&impact.measured, &fitted);
+    let (derived, mut derived_sd, derived_from) = derived_values(&impact.measured, &fitted);
+    let of_mass = bench.relative_energy(rig);
+    for energy in ["impact_energy", "elastic_energy", "absorbed_energy"] {
+        let value = derived.get(energy).copied().flatten();
+        let mut own = derived_sd.0.iter_mut().filter(|(name, _)| name == energy);
+        if let (Some(value), Some((_, sd))) = (value, own.next()) {
+            *sd = sd.hypot(value * of_mass);
+        }
+    }
     let nominal = fit.law.nominal_restitution();
     fitted
         .0

@@ -214,7 +214,7 @@ macro_rules! signal {
 }
 
 /// Every quantity, in the order of JSON and CSV.
-pub const QUANTITIES: [Quantity; 26] = [
+pub const QUANTITIES: [Quantity; 27] = [
     quantity(
         "impact_velocity",
         ("Impact velocity", "v₁", "m/s"),
@@ -318,6 +318,11 @@ pub const QUANTITIES: [Quantity; 26] = [
         "motion_noise",
         ("Noise of the motion", "σ Δx", "m"),
         signal!(motion_noise, no_sd),
+    ),
+    quantity(
+        "resolution",
+        ("Resolution", "Δt/T", ""),
+        signal!(resolution, no_sd),
     ),
     quantity(
         "acceleration_impulse_ratio",

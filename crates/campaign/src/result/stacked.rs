@@ -13,6 +13,9 @@ const BY_CHANCE: f64 = 1e-4;
 /// Part of the mean variance by which all variances are enlarged: a direction in which residuals
 /// hardly scatter, since the fit takes it up, is no proof; 1.
 const FLOOR: f64 = 0.05;
+/// Longest time between samples or counts, as a part of the contact: coarser recordings share
+/// what the fit makes of the onset between two samples; 1.
+const SHARP: f64 = 0.01;
 /// Fewest impacts beyond the parts of the contact.
 const BEYOND: usize = 4;
 /// Quantities that are told, with the words for them.
@@ -39,7 +42,8 @@ const QUANTITIES: [(&str, &str); 4] = [
 /// # Source
 /// Hotelling, H. (1931), The generalization of Student's ratio, Ann. Math. Statist. 2:360.
 pub fn law_misfits(impacts: &[ImpactOutcome], bench_is_off: bool) -> Vec<FindingOutcome> {
-    let counted = impacts.iter().filter(|impact| impact.counts());
+    let sharp = |impact: &ImpactOutcome| impact.derived("resolution").is_some_and(|r| r <= SHARP);
+    let counted = impacts.iter().filter(|own| own.counts() && sharp(own));
     let by_law = grouped(counted.map(|impact| (impact.law.as_str(), impact)));
     let told = by_law.iter().filter_map(|(law, impacts)| {
         let mut found = QUANTITIES.iter().filter_map(|(name, words)| {

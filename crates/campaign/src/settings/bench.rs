@@ -81,7 +81,7 @@ fn untold(quantity: BenchQuantity, rig: &RigPlan, others: &[BenchQuantity]) -> O
                         it; its inertia can be estimated";
             return Some(told.to_owned());
         }
-        BenchQuantity::Mass
+        BenchQuantity::Mass | BenchQuantity::ForceGain
             if matches!(
                 rig,
                 RigPlan::Carriage {
@@ -90,7 +90,9 @@ fn untold(quantity: BenchQuantity, rig: &RigPlan, others: &[BenchQuantity]) -> O
                 }
             ) =>
         {
-            return Some("the mass is found from impulse already".to_owned());
+            let told = "the mass is found from the impulse of this force already; weigh it, and \
+                        give the mass";
+            return Some(told.to_owned());
         }
         _ => (),
     }

@@ -46,6 +46,10 @@ pub fn fit_impact(
         let asked = (impact, rig, problem, options);
         widen(&mut fit, asked, (quantity, sd), quantile);
     }
+    let quantities: Vec<String> = fit.common.iter().map(CommonShift::words).collect();
+    if !quantities.is_empty() {
+        fit.findings.push(Finding::UncertainBench { quantities });
+    }
     Ok(fit)
 }
 
@@ -145,12 +149,6 @@ fn widen(
         let (low, high) = (reach(estimate.low), reach(estimate.high));
         (estimate.low, estimate.high) = (estimate.value - low, estimate.value + high);
     }
-    fit.findings.push(Finding::UncertainBench {
-        quantity: quantity.name(),
-        value,
-        sd,
-        unit: quantity.unit(),
-    });
     fit.common.push(CommonShift {
         quantity,
         sd,

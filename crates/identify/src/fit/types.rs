@@ -1,6 +1,6 @@
 //! What a fit returns.
 
-use crate::finding::Finding;
+use crate::finding::{Finding, Shown};
 use crate::fit::identifiability::Direction;
 use crate::fit::interval::IntervalDetail;
 use crate::fit::uncertainty::RunsTest;
@@ -64,6 +64,14 @@ pub struct CommonShift {
     pub sd: f64,
     /// Change of each parameter, then of each nuisance, for one standard uncertainty more; SI.
     pub shifts: Vec<f64>,
+}
+
+impl CommonShift {
+    /// "inertia ± 0.0002 kg m^2".
+    pub(crate) fn words(&self) -> String {
+        let unit = self.quantity.unit();
+        format!("{} ± {}", self.quantity.name(), Shown(self.sd, unit))
+    }
 }
 
 /// A law fitted to an impact.

@@ -94,6 +94,26 @@ impl BenchSd {
         self
     }
 
+    /// Standard uncertainty of the mass that the contact feels, as a part of it; 1.
+    pub fn relative_mass(&self, rig: &Rig) -> f64 {
+        let relative = |quantity: BenchQuantity| self.of(quantity) / quantity.value(rig);
+        match rig {
+            Rig::Pendulum(_) => {
+                relative(BenchQuantity::Inertia).hypot(2.0 * relative(BenchQuantity::Arm))
+            }
+            Rig::Carriage(_) => relative(BenchQuantity::Mass),
+        }
+    }
+
+    /// The same of the kinetic energy: where the displacement is as long as the arm, the arm
+    /// cancels; 1.
+    pub fn relative_energy(&self, rig: &Rig) -> f64 {
+        match rig {
+            Rig::Pendulum(own) if self.turns => self.of(BenchQuantity::Inertia) / own.inertia,
+            _ => self.relative_mass(rig),
+        }
+    }
+
     /// Quantities that are uncertain, and by how much.
     pub fn uncertain(&self) -> impl Iterator<Item = (BenchQuantity, f64)> {
         let all = BenchQuantity::ALL.into_iter().zip(self.sd);

@@ -28,6 +28,7 @@ pub fn parse_uncertain(text: &str, unit: &str) -> Result<(f64, Option<f64>), Uni
     let Some((value, sd)) = SIGNS.iter().find_map(split) else {
         return Ok((parse_as(text, unit)?, None));
     };
+    let sd = sd.replace('−', "-");
     let (value, sd) = (value.trim(), sd.trim());
     let wrong = |problem| UnitError::BadUncertainty {
         text: text.trim().into(),
@@ -35,22 +36,29 @@ pub fn parse_uncertain(text: &str, unit: &str) -> Result<(f64, Option<f64>), Uni
     };
     let (_, of_value) = number_and_unit(value);
     let (number, of_sd) = number_and_unit(sd);
+    if number.is_empty() {
+        return Err(wrong("no number stands there"));
+    }
+    if SIGNS.iter().any(|sign| sd.contains(sign)) {
+        return Err(wrong("there are two"));
+    }
     if number.starts_with('-') {
         return Err(wrong("it is negative"));
     }
-    if of_sd == "%" {
-        let value = parse_as(value, unit)?;
-        return Ok((value, Some(value.abs() * parse_as(number, "1")? / 100.0)));
-    }
-    let shared = of_value.is_empty() && !of_sd.is_empty();
-    if of_sd.is_empty() && !of_value.is_empty() {
+    let of_percent = of_sd.strip_prefix('%').map(str::trim);
+    let common = of_percent.unwrap_or(of_sd);
+    if common.is_empty() && of_percent.is_none() && !of_value.is_empty() {
         return Err(wrong("it has no unit"));
     }
-    let value = match shared {
-        true => parse_as(&format!("{value} {of_sd}"), unit)?,
+    let value = match of_value.is_empty() && !common.is_empty() {
+        true => parse_as(&format!("{value} {common}"), unit)?,
         false => parse_as(value, unit)?,
     };
-    Ok((value, Some(parse_as(sd, unit)?)))
+    let sd = match of_percent {
+        Some(_) => value.abs() * parse_as(number, "1")? / 100.0,
+        None => parse_as(sd, unit)?,
+    };
+    Ok((value, Some(sd)))
 }
 
 /// A text cut behind its number.
@@ -72,6 +80,8 @@ mod tests {
             ("505 mm ± 0.2 cm", "m", 0.505, 0.002),
             ("505 mm +/- 1 %", "m", 0.505, 0.00505),
             ("20 us +- 2 us", "s", 20e-6, 2e-6),
+            ("0.01435 ± 1 % kg m^2", "kg m^2", 0.01435, 0.0001435),
+            ("0.5 ± 1 %", "kg", 0.5, 0.005),
             ("0.5 ± 0.01", "kg", 0.5, 0.01),
             ("1e-3 ± 1e-5 m", "m", 1e-3, 1e-5),
         ] {
@@ -88,7 +98,10 @@ mod tests {
             ("0.5 kg ± 0.1", "has no unit"),
             ("0.5 ± -0.1 kg", "is negative"),
             ("0.5 kg ± 0.1 m", "is a length"),
-            ("0.5 kg ±", "has no unit"),
+            ("0.5 kg ±", "no number stands there"),
+            ("0.5 ± −0.1 kg", "is negative"),
+            ("0.5 ± 0.1 ± 0.1 kg", "there are two"),
+            ("0.5 ± nan kg", "no number stands there"),
             ("± 0.1 kg", "number"),
         ] {
             let error = parse_uncertain(text, "kg").unwrap_err().to_string();

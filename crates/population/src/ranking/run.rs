@@ -176,7 +176,7 @@ fn draw_impact(
             &findings,
             fit,
             &problems[place],
-            &rig.rig,
+            (&rig.rig, &campaign.fit.options.bench),
         ))
     });
     let ranked: Vec<ImpactOutcome> = ranked.collect();
@@ -203,7 +203,14 @@ fn fits(
         return Err(failure(entry, None, message));
     }
     let of_law = problems.iter().zip(&fits).filter_map(|(problem, fit)| {
-        let outcome = impact_outcome(entry, &impact, &findings, fit.as_ref()?, problem, &rig.rig);
+        let outcome = impact_outcome(
+            entry,
+            &impact,
+            &findings,
+            fit.as_ref()?,
+            problem,
+            (&rig.rig, &campaign.fit.options.bench),
+        );
         let group = campaign.shared.group_of(entry);
         Some(ImpactOutcome { group, ..outcome })
     });
