@@ -285,3 +285,108 @@ fn closed_form_medians_of_a_population_are_no_better_known_than_the_bench() {
     // Two per cent by nearly two deviations.
     assert!(exact < 0.01 && uncertain > 0.038, "{exact} {uncertain}");
 }
+
+#[test]
+fn says_nothing_of_a_bench_that_is_coarse_or_slow() {
+    for (rate, counts) in [
+        ("10 kHz", "360000"),
+        ("20 kHz", "2000"),
+        ("50 kHz", "20000"),
+        ("5 kHz", "8000"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let law = "kuwabara-kono(k=753599, c=1524)";
+        let mut command = assert_cmd::Command::cargo_bin("windfall").unwrap();
+        let made = command.current_dir(folder.path()).args([
+            "simulate",
+            "pendulum",
+            "--law",
+            law,
+            "--specimens",
+            "100",
+            "--encoder",
+            "counts",
+            "--counts-per-revolution",
+            counts,
+            "--rate",
+            rate,
+            "--noise",
+            "0.1 N",
+            "--velocity",
+            "1 m/s",
+            "--recordings",
+            "campaign",
+        ]);
+        assert!(made.output().unwrap().status.success());
+        let outcome = fitted(folder.path());
+        let codes = outcome["findings"].to_string();
+        let false_alarm = codes.contains("bench-") || codes.contains("law-misfit");
+        assert!(!false_alarm, "{rate} {counts}: {codes}");
+    }
+}
+
+#[test]
+fn the_deviation_of_an_estimate_does_not_depend_on_what_is_told() {
+    let estimate = |told: &str| {
+        let folder = campaign();
+        tell(
+            folder.path(),
+            "inertia = \"0.01435",
+            &format!("inertia = \"{told}"),
+        );
+        tell(
+            folder.path(),
+            "[fit]\n",
+            "[fit]\nestimate = [\"inertia\"]\n",
+        );
+        let outcome = fitted(folder.path());
+        let own = &outcome["estimated"]["inertia"];
+        let far = outcome["findings"].to_string().contains("bench-far");
+        (
+            own["value"].as_f64().unwrap(),
+            own["sd"].as_f64().unwrap(),
+            far,
+        )
+    };
+    let (value, sd, far) = estimate("0.01435");
+    assert!(!far);
+    for told in ["0.007175", "0.0287"] {
+        let (again, as_sure, far) = estimate(told);
+        assert!(
+            (again - value).abs() < 0.2 * sd && far,
+            "{told}: {again} {value} {sd}"
+        );
+        assert!((as_sure / sd - 1.0).abs() < 0.3, "{told}: {as_sure} {sd}");
+    }
+}
+
+#[test]
+fn a_mass_from_impulse_follows_the_sensitivity() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "simulate carriage --law kuwabara-kono(k=753599,c=1524) --mass 0.3kg --velocity \
+                1m/s --specimens 8 --unweighed --recordings campaign";
+    let (status, _, told) = windfall(&line.replace("                ", ""), folder.path());
+    assert_eq!(status, Some(0), "{told}");
+    let path = folder.path().join("campaign/campaign.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let uncertain = |text: &str| {
+        let line = text
+            .lines()
+            .find(|line| line.starts_with("sensitivity"))
+            .unwrap();
+        let value = line.split('"').nth(1).unwrap();
+        text.replacen(value, &format!("{value} ± 1 %"), 1)
+    };
+    std::fs::write(&path, uncertain(&text)).unwrap();
+    let (_, _, common) = deviations(&fitted(folder.path()));
+    // k of a mass and a force that both read 1 % more is 1 % more.
+    assert!((common.unwrap() - 0.01).abs() < 2e-3, "{common:?}");
+    tell(
+        folder.path(),
+        "[fit]\n",
+        "[fit]\nestimate = [\"force.gain\"]\n",
+    );
+    let (status, _, told) = windfall("fit campaign", folder.path());
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("impulse of this force already"), "{told}");
+}

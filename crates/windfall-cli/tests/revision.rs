@@ -128,8 +128,8 @@ fn pinned_numbers_are_those_of_the_revision() {
     let expected = (
         7,
         [
-            "70a88e6f8c05d5fb",
-            "93edae8f88505d02",
+            "d5b59bc05a3a5fcd",
+            "9a207a02b8cbdb1e",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

@@ -120,16 +120,7 @@ pub fn gather(
     gathered.assumed.extend(guessed.assumed.iter().cloned());
     gathered.missing = guessed.missing;
     if kind == TemplateKind::Drop {
-        let named = &recordings[0].1;
-        let named = named.of_specimen.iter().chain(&named.of_impact);
-        let named: Vec<&str> = named.map(|(column, _)| column.as_str()).collect();
-        let unknown = DROP_NEEDS.iter().filter(|need| {
-            let given = |column: &&str| column.starts_with(need.0);
-            !named.iter().any(given)
-        });
-        gathered
-            .missing
-            .extend(unknown.map(|need| need.1.to_owned()));
+        gathered.missing.extend(needs_of_drop(&recordings[0].1));
     }
     let new = NewDirectory::begin(directory)?;
     let mut copied = Vec::new();
@@ -166,6 +157,17 @@ pub fn gather(
     }
     new.end(CAMPAIGN_FILE)?;
     Ok(gathered)
+}
+
+/// What the names of drops do not tell.
+fn needs_of_drop(named: &NamedRecording) -> impl Iterator<Item = String> {
+    let columns = named.of_specimen.iter().chain(&named.of_impact);
+    let columns: Vec<&String> = columns.map(|(column, _)| column).collect();
+    let unknown = move |need: &&(&str, &str)| !columns.iter().any(|own| own.starts_with(need.0));
+    DROP_NEEDS
+        .iter()
+        .filter(unknown)
+        .map(|need| need.1.to_owned())
 }
 
 /// A specimen for each file, with the ending of the first.

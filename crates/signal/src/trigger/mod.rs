@@ -265,10 +265,8 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
 
     // A first guess of zero and sign.
     let (pilot, zero_from_end) = pilot_level(signal.values);
-    let centre = match options.baseline {
-        Baseline::Remove | Baseline::Drift => pilot,
-        Baseline::Keep => 0.0,
-    };
+    let keeps = options.baseline == Baseline::Keep;
+    let centre = if keeps { 0.0 } else { pilot };
     let sample_noise = white_noise(signal.values);
     let PulseScale {
         top,
@@ -308,10 +306,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         contacts.before = before;
         contacts.trend_sd = wander(signal.values, &quiet, height.abs());
         contacts.quiet = quiet.clone();
-        contacts.offset = match options.baseline {
-            Baseline::Remove | Baseline::Drift => mean,
-            Baseline::Keep => 0.0,
-        };
+        contacts.offset = if keeps { 0.0 } else { mean };
         let raised: Vec<f64> = signal
             .values
             .iter()
@@ -341,12 +336,8 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         let looked_again = refused.is_some();
         let first = contacts.windows.first().copied();
         let Some(first) = first.filter(|_| !looked_again || !quiet.is_empty()) else {
-            let error = refused.take().unwrap_or_else(|| Error::NoContact {
-                channel: signal.name.to_owned(),
-                largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-                threshold: contacts.threshold,
-                unit: signal.unit,
-            });
+            let error = || no_contact(signal, &raised, contacts.threshold);
+            let error = refused.take().unwrap_or_else(error);
             // Contacts as large as the strongest may lie before it, and pass for noise.
             let earlier = before_all(&averaged, top, centre, sign);
             if looked_again || !first_pass || earlier >= before {
@@ -363,6 +354,18 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         let until = first.onset - BASELINE_GUARD * (first.end - first.onset);
         rise = 0.5 * (first.end - first.onset);
         before = signal.times.partition_point(|&t| t < until);
+    }
+}
+
+/// The error of a signal that does not reach its threshold.
+///
+/// * `raised`: the signal above its zero, positive in contact
+fn no_contact(signal: &Signal, raised: &[f64], threshold: f64) -> Error {
+    Error::NoContact {
+        channel: signal.name.to_owned(),
+        largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        threshold,
+        unit: signal.unit,
     }
 }
 

@@ -24,6 +24,7 @@ export const DERIVED: Record<string, Meaning> = {
   force_delay: { label: "Delay of the force", symbol: "τ", unit: "s" },
   motion_misfit: { label: "Misfit of the motion", symbol: "Δx F", unit: "m" },
   motion_noise: { label: "Noise of the motion", symbol: "σ Δx", unit: "m" },
+  resolution: { label: "Resolution", symbol: "Δt/T", unit: "" },
   acceleration_impulse_ratio: { label: "Impulse of force over that of acceleration", symbol: "J/mΔv", unit: "" },
   acceleration_peak_ratio: { label: "Peak of force over that of acceleration", symbol: "F/ma", unit: "" },
   integrated_displacement_error: { label: "Integrated less measured displacement, largest", symbol: "Δx", unit: "m" },
