@@ -197,7 +197,7 @@ fn rejects_what_the_bench_cannot_tell() {
         (
             "[fit]\n",
             "[fit]\nestimate = [\"inertia\", \"force.gain\"]\n",
-            "tell one number for inertia and force.gain",
+            "determine one number for inertia and force.gain",
         ),
         (
             "[contact]\n",

@@ -100,7 +100,7 @@ fn untold(quantity: BenchQuantity, rig: &RigPlan, others: &[BenchQuantity]) -> O
     let other = others.iter().find(|own| of_gain(own) && **own != quantity);
     let other = other.filter(|_| of_gain(&quantity))?;
     Some(format!(
-        "force and displacement tell one number for {} and {}: estimate one, and give the other \
+        "force and displacement together determine one number for {} and {}: estimate one, and give the other \
          its uncertainty behind ±. A known weight on the force sensor tells the gain; a known \
          mass on the moving body tells the inertia",
         other.name(),
