@@ -41,7 +41,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("engines", "scene-run files scene contact"),
     (
         "report",
-        "drop campaign cards draw files identify contact signal",
+        "drop campaign cards draw files identify contact signal statistics",
     ),
     (
         "workspace",

@@ -1,15 +1,15 @@
 //! What the report of a campaign of impacts says.
 
-use crate::methods::methods;
-use windfall_campaign::impacts::figure_covariate::{covariates_of, figure_of_covariate};
-use windfall_campaign::impacts::figure_impact::figure_of_impact;
-use windfall_campaign::impacts::figure_parameters::{
+use crate::figures::covariate::{covariates_of, figure_of_covariate};
+use crate::figures::parameters::{
     estimated_parameters, figure_of_pairs, figure_of_predictions, groups_of_impacts,
 };
-use windfall_campaign::impacts::figure_posterior::figure_of_posterior;
-use windfall_campaign::impacts::figure_profiles::figure_of_profiles;
-use windfall_campaign::impacts::figure_residuals::figure_of_residuals;
-use windfall_campaign::impacts::figure_stacked::figure_of_stacked;
+use crate::figures::posterior::figure_of_posterior;
+use crate::figures::profiles::figure_of_profiles;
+use crate::figures::residuals::figure_of_residuals;
+use crate::figures::stacked::figure_of_stacked;
+use crate::methods::methods;
+use windfall_campaign::impacts::figure_impact::figure_of_impact;
 use windfall_campaign::impacts::groups::{
     SOURCES, derived_cells, groups_of, heading_of, law_cells, parameter_cells,
 };

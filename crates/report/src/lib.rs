@@ -2,6 +2,7 @@
 
 pub mod any_text;
 pub mod explain;
+pub mod figures;
 pub mod fit_any;
 pub mod impacts;
 pub mod items;

@@ -27,9 +27,8 @@ pub(crate) struct Touch {
 impl Touch {
     /// * `threshold`, `peak`: of the force, or of whatever shows the contact; one unit
     pub(crate) fn new(threshold: f64, peak: f64, place: &Surroundings) -> Self {
-        let share = (threshold / peak).clamp(0.0, 1.0);
+        let (share, duration) = ((threshold / peak).clamp(0.0, 1.0), place.duration());
         let angle = share.powf(1.0 / ONSET_POWER).asin();
-        let duration = place.duration();
         // T = duration + 2 late, of which late is the part angle / π.
         let late = duration * angle / (PI - 2.0 * angle).max(angle);
         Self {
@@ -47,9 +46,8 @@ impl Touch {
     /// * `change`: of the velocity in the whole contact; m/s
     /// * `driving`: acceleration of the free motion; m/s²
     pub(crate) fn velocity_sd(&self, change: f64, driving: f64) -> f64 {
-        let whole = self.duration + 2.0 * self.late;
         let reaches = (1.0 - GUARD * self.duration / self.late).max(0.0);
-        let power = ONSET_POWER + 1.0;
+        let (power, whole) = (ONSET_POWER + 1.0, self.duration + 2.0 * self.late);
         let pushed = change.abs() * self.share * self.late / (power * MEAN_OF_PULSE * whole);
         (driving * self.late).hypot(pushed * reaches.powf(power))
     }

@@ -1,19 +1,40 @@
-//! Quantities of the bench that are estimated over all impacts, before any law is fitted.
+//! The rig of a campaign, with the quantities that are estimated over all impacts before any
+//! law is fitted.
 
 use crate::error::CampaignError;
-use crate::impacts::mass::measured_of;
+use crate::impacts::mass::{RigFound, measured_of, rig_of};
 use crate::result::bench::pooled;
 use crate::result::counted::excluded;
 use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
 use rayon::prelude::*;
 use windfall_files::error::Error;
 use windfall_identify::rig::bench::BenchQuantity;
+use windfall_identify::rig::kind::Rig;
 use windfall_signal::impact::Measured;
 use windfall_signal::recording::Quantity;
 use windfall_signal::uncertain::Uncertain;
 
 /// Deviations by which impacts may differ from what campaign.toml says with its uncertainty.
 const CONTRADICTS: f64 = 5.0;
+
+/// The rig of a campaign, with what of it is estimated; its uncertainties go to the fits.
+///
+/// # Errors
+/// No impact shows the mass, or those of [`estimate_bench`].
+pub fn find_rig(campaign: &mut ImpactCampaign) -> Result<RigFound, Error> {
+    estimate_bench(campaign)?;
+    let found = rig_of(campaign)?;
+    let bench = &mut campaign.bench.sd;
+    if matches!(found.rig, Rig::Carriage(_)) {
+        *bench = bench.with(BenchQuantity::Mass, found.mass.sd);
+        // Of an impulse that reads 1 % more follows a mass that is 1 % larger.
+        if found.mass.impacts > 0 {
+            bench.tied = Some(BenchQuantity::Mass);
+        }
+    }
+    campaign.fit.options.bench = *bench;
+    Ok(found)
+}
 
 /// Estimates what `[fit] estimate` names, and puts it in the place of what campaign.toml says.
 ///

@@ -14,7 +14,7 @@ use windfall_signal::kinematics::value_at;
 const RATE_SPAN: f64 = 0.05;
 
 /// Colour of the contact window, which no law has before the fourth.
-pub(crate) const WINDOW: usize = 4;
+pub const WINDOW: usize = 4;
 
 /// Points of a law's line.
 const POINTS: usize = 400;

@@ -1,7 +1,6 @@
 //! The rig of a campaign with its mass, weighed or from the recordings.
 
 use crate::error::CampaignError;
-use crate::impacts::bench::estimate_bench;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
 use crate::result::outcome::MassOutcome;
@@ -9,7 +8,6 @@ use crate::settings::model::{ImpactCampaign, ImpactEntry, MassPlan, RigPlan};
 use rayon::prelude::*;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_identify::rig::bench::BenchQuantity;
 use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_signal::impact::Measured;
 use windfall_signal::mass::{mass_from_impulse, mass_from_impulses};
@@ -26,29 +24,14 @@ pub struct RigFound {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// The rig of a campaign, with what of it is estimated; its uncertainties go to the fits.
+/// The rig of a campaign as it is told.
 ///
 /// A mass "from impulse" is one mass for the whole campaign: the weighted mean
 /// over all impacts that show impulse and velocities.
 ///
 /// # Errors
-/// No impact shows the mass, or those of [`estimate_bench`].
-pub fn find_rig(campaign: &mut ImpactCampaign) -> Result<RigFound, Error> {
-    estimate_bench(campaign)?;
-    let found = rig_of(campaign)?;
-    let bench = &mut campaign.bench.sd;
-    if matches!(found.rig, Rig::Carriage(_)) {
-        *bench = bench.with(BenchQuantity::Mass, found.mass.sd);
-        // Of an impulse that reads 1 % more follows a mass that is 1 % larger.
-        if found.mass.impacts > 0 {
-            bench.tied = Some(BenchQuantity::Mass);
-        }
-    }
-    campaign.fit.options.bench = *bench;
-    Ok(found)
-}
-
-fn rig_of(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
+/// No impact shows the mass.
+pub(crate) fn rig_of(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
     match campaign.rig {
         RigPlan::Pendulum(pendulum) => Ok(known(Rig::Pendulum(pendulum), 0.0)),
         RigPlan::Carriage {

@@ -1,10 +1,10 @@
 //! `windfall fit`: the main job, recordings → parameters, table, store.
 
-use crate::impacts::bench::estimate_bench;
+use crate::impacts::bench::{estimate_bench, find_rig};
 use crate::impacts::card::card_of_fit;
 use crate::impacts::figure_impact::figure_of_impact;
 use crate::impacts::fit::Fits;
-use crate::impacts::mass::{RigFound, find_rig};
+use crate::impacts::mass::RigFound;
 use crate::pipeline::evaluate::{Evaluated, evaluate};
 use crate::pipeline::request::{FitRequest, Reuse, apply_request};
 use crate::recording::digests::Digests;

@@ -164,7 +164,7 @@ impl Default for TriggerOptions {
 }
 
 /// The contacts of a recording and what they were found with.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contacts {
     /// In order of time; at least one.
     pub windows: Vec<ContactWindow>,
@@ -292,10 +292,13 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     } else {
         n
     };
-    let mut contacts = none_yet(reversed, smoothing);
+    let mut contacts = Contacts {
+        reversed,
+        smoothing,
+        ..Contacts::default()
+    };
     let mut rise = signal.times[top] - signal.times[before.min(top)];
-    let mut first_pass = true;
-    let mut refused = None;
+    let (mut first_pass, mut refused) = (true, None);
     loop {
         let height = averaged[top] - centre;
         let quiet = quiet_stretch(signal.times, signal.values, before, (height, rise));
@@ -366,21 +369,6 @@ fn no_contact(signal: &Signal, raised: &[f64], threshold: f64) -> Error {
         largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         threshold,
         unit: signal.unit,
-    }
-}
-
-/// No contacts, of a sign and a smoothing that are known.
-fn none_yet(reversed: bool, smoothing: usize) -> Contacts {
-    Contacts {
-        windows: Vec::new(),
-        threshold: 0.0,
-        offset: 0.0,
-        deviation: 0.0,
-        before: 0,
-        quiet: 0..0,
-        trend_sd: 0.0,
-        reversed,
-        smoothing,
     }
 }
 

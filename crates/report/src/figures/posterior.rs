@@ -1,10 +1,10 @@
 //! The draws of a posterior: how probable each value of a parameter is, and which
 //! values go together.
 
-use crate::impacts::figure_parameters::own_ellipse;
-use crate::result::outcome::ImpactOutcome;
+use crate::figures::parameters::own_ellipse;
 use smol_str::SmolStr;
 use std::f64::consts::TAU;
+use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
 

@@ -1,6 +1,6 @@
 //! Residuals of all impacts, laid upon each other over the contact.
 
-use crate::result::outcome::ImpactOutcome;
+use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_identify::fit::result::PHASES;

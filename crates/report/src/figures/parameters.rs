@@ -1,9 +1,9 @@
 //! A fitted campaign as figures: parameters against each other, and what the law
 //! predicts against what the signals show.
 
-use crate::result::outcome::ImpactOutcome;
-use crate::result::quantity::{Quantity, quantities_named};
 use std::f64::consts::TAU;
+use windfall_campaign::result::outcome::ImpactOutcome;
+use windfall_campaign::result::quantity::{Quantity, quantities_named};
 use windfall_draw::files::NamedFigure;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::named::grouped;

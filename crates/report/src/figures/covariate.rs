@@ -1,9 +1,9 @@
 //! Parameters against what the tables say of impacts and specimens.
 
-use crate::impacts::figure_parameters::{estimated_parameters, groups_of_impacts};
-use crate::result::outcome::ImpactOutcome;
-use crate::settings::model::ImpactCampaign;
+use crate::figures::parameters::{estimated_parameters, groups_of_impacts};
 use itertools::Itertools;
+use windfall_campaign::result::outcome::ImpactOutcome;
+use windfall_campaign::settings::model::ImpactCampaign;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::text::column_title::column_title;

@@ -1,8 +1,8 @@
 //! What a fitted law leaves of the signals: residuals over time, and how those of
 //! successive samples go together.
 
-use crate::impacts::figure_impact::{FittedImpact, WINDOW, motion_at};
-use crate::result::outcome::ImpactOutcome;
+use windfall_campaign::impacts::figure_impact::{FittedImpact, WINDOW, motion_at};
+use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_draw::xy::{Figure, Panel, Series, Style};

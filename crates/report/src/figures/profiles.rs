@@ -1,8 +1,8 @@
 //! How the likelihood falls on either side of each estimate.
 
-use crate::result::interval_outcome::ProfileOutcome;
-use crate::result::outcome::ImpactOutcome;
 use smol_str::SmolStr;
+use windfall_campaign::result::interval_outcome::ProfileOutcome;
+use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
 

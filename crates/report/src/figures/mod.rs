@@ -1,0 +1,8 @@
+//! Figures of a report on impacts: of the whole campaign, and of what the fit of one leaves.
+
+pub mod covariate;
+pub mod parameters;
+pub mod posterior;
+pub mod profiles;
+pub mod residuals;
+pub mod stacked;
