@@ -20,7 +20,8 @@ const CONTRADICTS: f64 = 5.0;
 /// The rig of a campaign, with what of it is estimated; its uncertainties go to the fits.
 ///
 /// # Errors
-/// No impact shows the mass, or those of [`estimate_bench`].
+/// No impact shows the mass; fewer than five tell what is to be estimated, or they contradict
+/// what campaign.toml says.
 pub fn find_rig(campaign: &mut ImpactCampaign) -> Result<RigFound, Error> {
     estimate_bench(campaign)?;
     let found = rig_of(campaign)?;
