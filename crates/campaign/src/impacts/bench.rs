@@ -2,7 +2,8 @@
 //! law is fitted.
 
 use crate::error::CampaignError;
-use crate::impacts::mass::{RigFound, measured_of, rig_of};
+use crate::impacts::mass::{RigFound, rig_of};
+use crate::recording::extract::extract_recording;
 use crate::result::bench::pooled;
 use crate::result::counted::excluded;
 use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
@@ -54,8 +55,9 @@ pub(crate) fn estimate_bench(campaign: &mut ImpactCampaign) -> Result<(), Error>
     }
     let entries = campaign.shared.entries.par_iter();
     let entries = entries.filter(|entry| excluded(entry).is_none());
-    let measured = entries.filter_map(|entry| measured_of(campaign, entry).ok());
-    let measured: Vec<Measured> = measured.collect();
+    let mass = Some(rig_of(campaign)?.rig.effective_mass());
+    let extracted = entries.filter_map(|entry| extract_recording(campaign, entry, mass).ok());
+    let measured: Vec<Measured> = extracted.map(|(impact, _)| impact.measured).collect();
     for quantity in asked {
         let (name, pooled_name) = match quantity {
             BenchQuantity::ForceDelay => ("delay", "force_delay"),
@@ -167,7 +169,12 @@ fn apply(campaign: &mut ImpactCampaign, quantity: BenchQuantity, found: Uncertai
         _ => (),
     }
     let bench = &mut campaign.bench;
-    bench.sd = bench.sd.with(quantity, sd);
+    // The force is read with the new gain, which is known to this part of itself.
+    let of_fits = match quantity {
+        BenchQuantity::ForceGain => sd / value,
+        _ => sd,
+    };
+    bench.sd = bench.sd.with(quantity, of_fits);
     if quantity != BenchQuantity::ForceDelay {
         bench.sd.tied = Some(quantity);
     }

@@ -115,16 +115,6 @@ fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFoun
     })
 }
 
-/// What the signals of an impact say on the rig as it is told.
-pub(crate) fn measured_of(
-    campaign: &ImpactCampaign,
-    entry: &ImpactEntry,
-) -> Result<Measured, Error> {
-    let mass = rig_of(campaign)?.rig.effective_mass();
-    let (impact, _) = extract_recording(campaign, entry, Some(mass))?;
-    Ok(impact.measured)
-}
-
 /// What an impact that shows the mass measured.
 fn measured(
     campaign: &ImpactCampaign,
