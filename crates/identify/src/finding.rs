@@ -81,8 +81,16 @@ pub enum Finding {
         /// Noise of a sample; SI.
         noise: f64,
     },
-    /// What is uncertain of the bench widens the intervals.
-    #[error("the intervals include what is uncertain of the bench: {}", quantities.join(", "))]
+    /// The uncertainty of the mass widens the intervals.
+    #[error("the intervals include the uncertainty of the mass, {} ± {}", Shown(*mass, ""), Shown(*sd, "kg"))]
+    UncertainMass {
+        /// Mass; kg.
+        mass: f64,
+        /// Its standard uncertainty; kg.
+        sd: f64,
+    },
+    /// The uncertainties of the bench widen the intervals.
+    #[error("the intervals include the uncertainty of the bench: {}", quantities.join(", "))]
     UncertainBench {
         /// Each quantity with its standard uncertainty.
         quantities: Vec<String>,
@@ -204,10 +212,8 @@ impl Finding {
             Self::Singular => "singular",
             Self::StructuredResiduals { .. } => "structured-residuals",
             Self::Misfit { .. } => "misfit",
-            Self::UncertainBench { quantities } => match &quantities[..] {
-                [one] if one.starts_with("mass ") => "uncertain-mass",
-                _ => "uncertain-bench",
-            },
+            Self::UncertainMass { .. } => "uncertain-mass",
+            Self::UncertainBench { .. } => "uncertain-bench",
             Self::BenchLeftOut {
                 quantity: "mass", ..
             } => "mass-left-out",
@@ -267,6 +273,14 @@ mod tests {
         assert_eq!(
             at_bound.to_string(),
             "p ended on its upper bound 6: the data call for a value beyond it, or do not determine it"
+        );
+        let uncertain = Finding::UncertainMass {
+            mass: 0.517_517_338_604_740_6,
+            sd: 0.004_415_280_502_853_594,
+        };
+        assert_eq!(
+            uncertain.to_string(),
+            "the intervals include the uncertainty of the mass, 0.5175 ± 0.004415 kg"
         );
         let cases = [
             (0.0, "0"),

@@ -16,28 +16,6 @@ use windfall_contact::laws::kind::Law;
 use windfall_numerics::least_squares::Stop;
 use windfall_statistics::distribution::tail::t_upper_quantile;
 
-/// Means of residuals over their root mean square in equal parts of a contact; zero where there
-/// is no sample.
-///
-/// * `onset`: on the clock of `times`; s
-fn by_phase(times: &[f64], residuals: &[f64], (onset, duration): (f64, f64)) -> [f64; PHASES] {
-    let (mut sums, mut counts) = ([0.0; PHASES], [0.0; PHASES]);
-    let mut square = 0.0;
-    for (time, residual) in times.iter().zip(residuals) {
-        square += residual * residual;
-        let phase = (time - onset) / duration * PHASES as f64;
-        if (0.0..PHASES as f64).contains(&phase) {
-            sums[phase as usize] += residual;
-            counts[phase as usize] += 1.0;
-        }
-    }
-    let rms = (square / residuals.len().max(1) as f64).sqrt();
-    std::array::from_fn(|i| match counts[i] > 0.0 && rms > 0.0 {
-        true => sums[i] / counts[i] / rms,
-        false => 0.0,
-    })
-}
-
 /// Correlation above which two parameters of the law, and a parameter and a
 /// nuisance, are reported as inseparable. A stiffness always moves with the
 /// onset; that alone is no news.
@@ -384,6 +362,28 @@ fn quantity_remarks(found: &QuantityFit) -> Vec<Finding> {
         });
     }
     out
+}
+
+/// Means of residuals over their root mean square in equal parts of a contact; zero where there
+/// is no sample.
+///
+/// * `onset`: on the clock of `times`; s
+fn by_phase(times: &[f64], residuals: &[f64], (onset, duration): (f64, f64)) -> [f64; PHASES] {
+    let (mut sums, mut counts) = ([0.0; PHASES], [0.0; PHASES]);
+    let mut square = 0.0;
+    for (time, residual) in times.iter().zip(residuals) {
+        square += residual * residual;
+        let phase = (time - onset) / duration * PHASES as f64;
+        if (0.0..PHASES as f64).contains(&phase) {
+            sums[phase as usize] += residual;
+            counts[phase as usize] += 1.0;
+        }
+    }
+    let rms = (square / residuals.len().max(1) as f64).sqrt();
+    std::array::from_fn(|i| match counts[i] > 0.0 && rms > 0.0 {
+        true => sums[i] / counts[i] / rms,
+        false => 0.0,
+    })
 }
 
 fn correlations(covariance: &[Vec<f64>]) -> Vec<Vec<f64>> {

@@ -46,10 +46,16 @@ pub fn fit_impact(
         let asked = (impact, rig, problem, options);
         widen(&mut fit, asked, (quantity, sd), quantile);
     }
-    let quantities: Vec<String> = fit.common.iter().map(CommonShift::words).collect();
-    if !quantities.is_empty() {
-        fit.findings.push(Finding::UncertainBench { quantities });
-    }
+    fit.findings.extend(match &fit.common[..] {
+        [] => None,
+        [one] if one.quantity == BenchQuantity::Mass => Some(Finding::UncertainMass {
+            mass: one.quantity.value(rig),
+            sd: one.sd,
+        }),
+        all => Some(Finding::UncertainBench {
+            quantities: all.iter().map(CommonShift::words).collect(),
+        }),
+    });
     Ok(fit)
 }
 
