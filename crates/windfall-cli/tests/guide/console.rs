@@ -102,7 +102,13 @@ fn run(typed: &Typed, status: i32, folder: &Path, place: &str) -> Vec<String> {
         let shown: Vec<&str> = typed.shown.iter().map(String::as_str).collect();
         let matches = lines_match(trimmed(&shown), trimmed(&printed));
         if !matches && writes() {
-            return mended(&shown, trimmed(&printed));
+            let now = mended(&shown, trimmed(&printed));
+            let lines: Vec<&str> = now.iter().map(String::as_str).collect();
+            assert!(
+                lines_match(trimmed(&lines), trimmed(&printed)),
+                "{place}: other lines are printed than the page has; edit it by hand:\n{text}"
+            );
+            return now;
         }
         assert!(
             matches,
