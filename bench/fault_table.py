@@ -48,13 +48,13 @@ group = "variety"
 """
 
 
-def write_campaign(folder, records, threshold):
+def write_campaign(folder, records, threshold, inertia=fault_impacts.INERTIA):
     """The records of one fault and strength; those with times are a campaign of their own."""
     (folder / "raw").mkdir(parents=True)
     first = records[0][1]
     text = CAMPAIGN.format(
         title=folder.name,
-        inertia=fault_impacts.INERTIA,
+        inertia=inertia,
         arm=fault_impacts.ARM,
         mass=fault_impacts.MASS,
         centre=fault_impacts.CENTRE,

@@ -7,14 +7,13 @@ Each motion is recorded by every bench. "named": campaigns whose finding names t
 import argparse
 import concurrent.futures
 import importlib.util
-import json
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 import fault_impacts
+import fault_table
 import numpy as np
 from scipy.signal import cont2discrete, lfilter
 
@@ -59,34 +58,6 @@ def motion_of(rig, law, k, c, velocity):
     at, end, _ = rig.integrate(LAWS[law](rig, k, c), rig.MEFF, velocity, 0.05, omega2=rig.OMEGA2, rtol=1e-9)
     return (lambda times: at(times)[::2]), end
 
-CAMPAIGN = """format = 1
-[campaign]
-title = "{title}"
-simulated = "a bench that is not as told"
-[rig]
-kind = "pendulum"
-inertia = "{inertia} kg m^2"
-arm = "{arm} m"
-mass = "{mass} kg"
-centre_of_mass = "{centre} m"
-[files]
-directory = "raw"
-rate = "200 kHz"
-[channels.force]
-column = "force_V"
-sensitivity = "11 mV/N"
-[channels.count]
-column = "count"
-[encoder]
-counts_per_revolution = {counts}
-[contact]
-threshold = "1 N"
-[fit]
-laws = ["kuwabara-kono"]
-{estimate}
-"""
-
-
 def second_order(force, interval, frequency, damping):
     """A sensor or filter with two poles."""
     w = 2 * np.pi * frequency
@@ -95,7 +66,7 @@ def second_order(force, interval, frequency, damping):
 
 
 def recorded(motion, instrument, rng):
-    """Force (N) and count of one motion."""
+    """Force (N) and position (counts, with their fraction) of one motion."""
     k, c, velocity, at, end = motion
     interval = 1 / fault_impacts.RATE
     start = -fault_impacts.BEFORE - rng.uniform() * interval
@@ -110,28 +81,18 @@ def recorded(motion, instrument, rng):
         force = force[::FINE]
     force = instrument.get("gain", 1.0) * force + fault_impacts.NOISE * rng.normal(size=count)
     position = np.arcsin(x / fault_impacts.ARM) * fault_impacts.COUNTS / (2 * np.pi)
-    return force, np.floor(position + rng.uniform(100, 104)).astype(int)
+    return force, position + rng.uniform(100, 104)
 
 
 def write(folder, told, instrument, motions, rng):
-    (folder / "raw").mkdir(parents=True)
-    names = [f"i{i:03d}" for i in range(len(motions))]
-    for name, motion in zip(names, motions):
-        force, count = recorded(motion, instrument, rng)
-        rows = np.column_stack([force * fault_impacts.SENSITIVITY, count])
-        np.savetxt(folder / "raw" / f"{name}.csv", rows, delimiter=",", header="force_V,count", comments="", fmt=["%.7g", "%d"])
-    (folder / "impacts.csv").write_text("id,specimen,file\n" + "".join(f"{n},s{n},{n}.csv\n" for n in names))
-    (folder / "specimens.csv").write_text("id\n" + "".join(f"s{n}\n" for n in names))
-    values = {"inertia": fault_impacts.INERTIA * told.get("inertia", 1.0), "arm": fault_impacts.ARM}
-    values |= {"mass": fault_impacts.MASS, "centre": fault_impacts.CENTRE, "counts": fault_impacts.COUNTS}
-    return lambda estimate: (folder / "campaign.toml").write_text(
-        CAMPAIGN.format(title=folder.name, estimate=f'estimate = ["{estimate}"]' if estimate else "", **values)
-    )
-
-
-def fitted(program, folder):
-    run = subprocess.run([program, "fit", folder, "--format", "json", "--refit"], capture_output=True, text=True)
-    return json.loads(run.stdout) if run.returncode == 0 else None
+    """Writes a campaign; gives what asks for an estimate in it."""
+    made = [fault_impacts.Record(*recorded(motion, instrument, rng), motion[0], motion[2]) for motion in motions]
+    records = [(f"i{index:03d}", record) for index, record in enumerate(made)]
+    inertia = fault_impacts.INERTIA * told.get("inertia", 1.0)
+    fault_table.write_campaign(folder, records, "1 N", inertia)
+    path = folder / "campaign.toml"
+    plain = path.read_text()
+    return lambda quantity: path.write_text(plain.replace("[fit]\n", f'[fit]\nestimate = ["{quantity}"]\n'))
 
 
 def compared(outcome, motions):
@@ -163,14 +124,13 @@ def campaign(program, seed, index, impacts, rigs):
             if name in LAWS:
                 made = [(*drawn, *motion_of(other_hand(), name, *drawn)) for drawn in (own[:3] for own in motions)]
             tell = write(folder, told, instrument, made, rng)
-            tell(None)
-            plain = fitted(program, folder)
+            plain = fault_table.fitted(program, folder)
             own = {"plain": compared(plain, motions)}
             said = {finding["code"] for finding in plain["findings"] if finding["code"].startswith(("bench", "law-"))}
             own["named"] = bool(said & set(codes)) if codes else not said
             if quantity:
                 tell(quantity)
-                better = fitted(program, folder)
+                better = fault_table.fitted(program, folder)
                 own["better"] = compared(better, motions)
                 if truth is not None:
                     estimate = better["estimated"][quantity]
