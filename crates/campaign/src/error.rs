@@ -46,10 +46,10 @@ pub enum CampaignError {
         /// Where, and how to settle it.
         doubt: String,
     },
-    /// A quantity of the bench that the impacts do not tell.
+    /// A quantity of the bench that the impacts do not determine.
     #[error(
-        "{path}: [fit] estimate: {quantity} cannot be told: {told} of the impacts show the {what} \
-         of the force beside the displacement, and at least 5 are needed; take it out of \
+        "{path}: [fit] estimate: {quantity} cannot be determined: {told} of the impacts show the \
+         {what} of the force against the displacement, and at least 5 are needed; take it out of \
          `estimate`", path = path.display()
     )]
     BenchUntold {
@@ -57,9 +57,9 @@ pub enum CampaignError {
         path: PathBuf,
         /// The quantity.
         quantity: &'static str,
-        /// What of the force tells it.
+        /// What of the force determines it.
         what: &'static str,
-        /// Impacts that tell something.
+        /// Impacts that show it.
         told: usize,
     },
     /// Impacts that contradict what is given with an uncertainty.

@@ -416,7 +416,7 @@ fn high_threshold(
         share,
         cure: match options.trigger.threshold {
             Threshold::Fixed(_) => "Lower `threshold` in [contact], or leave it to the noise",
-            Threshold::Automatic { .. } => "The noise asks for it: look at cable and amplifier",
+            Threshold::Automatic { .. } => "The noise requires it: check cable and amplifier",
         },
     })
 }

@@ -112,7 +112,7 @@ fn closed_form_an_uncertain_inertia_is_in_every_interval_and_not_averaged_out() 
     let common = common.unwrap();
     assert!((common - 0.02).abs() < 1e-3, "{common}");
     let (_, out, _) = windfall("fit campaign", folder.path());
-    assert!(out.contains("moves all of them together"), "{out}");
+    assert!(out.contains("shifts all impacts together"), "{out}");
     // The card's median of all fruit is no better known than the bench.
     let (status, _, told) = windfall("fit campaign --card card.toml", folder.path());
     assert_eq!(status, Some(0), "{told}");

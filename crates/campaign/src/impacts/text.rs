@@ -166,8 +166,8 @@ pub fn common_line(groups: &[&GroupOutcome]) -> Option<String> {
     let parts: Vec<String> = parts.collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "What is uncertain of the bench moves all of them together, {}; no number of impacts \
-             makes that smaller",
+            "The uncertainty of the bench shifts all impacts together, {}; more impacts do not \
+             reduce it",
             parts.join(", ")
         )
     })

@@ -153,8 +153,9 @@ pub fn far_estimates(
         let away = (own.value - own.told).abs() / scale;
         (away > FAR).then(|| {
             let told = format!(
-                "{name} is estimated {:.0} % away from what campaign.toml says{}: an error of \
-                 something else is likelier ({likelier}), and goes into stiffness and damping",
+                "{name} is estimated {:.0} % away from what campaign.toml says{}: \
+                 something else is more likely to be wrong ({likelier}), and that error then goes \
+                 into stiffness and damping",
                 100.0 * away,
                 if scale == duration {
                     " (of the contact)"

@@ -53,7 +53,7 @@ pub fn law_misfits(impacts: &[ImpactOutcome], bench_is_off: bool) -> Vec<Finding
             (common.chance < BY_CHANCE).then(|| {
                 let where_ = 100.0 * (common.phase as f64 + 0.5) / PHASES as f64;
                 format!(
-                    "the {words} by {:.2} of its residual at {where_:.0} % of the contact (p = {:.0e})",
+                    "a mean {words} residual of {:.2} of its rms at {where_:.0} % of the contact (p = {:.0e})",
                     common.size, common.chance
                 )
             })
@@ -61,14 +61,14 @@ pub fn law_misfits(impacts: &[ImpactOutcome], bench_is_off: bool) -> Vec<Finding
         let found = found.join(", ");
         (!found.is_empty()).then(|| {
             let cause = match bench_is_off {
-                true => "the bench explains some of it (see the findings on it): estimate or mend that first",
+                true => "the bench is off too, which leaves residuals of its own: correct or estimate it first",
                 false => {
                     "the law is not that of this fruit (yield, another exponent, another damping: \
                      compare with `windfall laws`), or the arm or the base moves by itself"
                 }
             };
             format!(
-                "{law} departs from the {} impacts in the same way each time: {found}; {cause}",
+                "the residuals of {law} in {} impacts share a pattern that is no noise: {found}; {cause}",
                 impacts.len()
             )
         })
