@@ -12,7 +12,9 @@ use windfall_signal::trigger::{Baseline, Orientation};
 
 /// Paragraphs that say exactly how the results came about.
 pub fn methods(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Vec<String> {
-    let mut paragraphs = vec![rig(campaign, outcome), signals(campaign)];
+    let mut paragraphs = vec![rig(campaign, outcome)];
+    paragraphs.extend(estimated(outcome));
+    paragraphs.push(signals(campaign));
     paragraphs.extend(laws_text(&campaign.fit.laws, &campaign.fit.free));
     paragraphs.push(cost(&campaign.fit.options));
     paragraphs.push(nuisances(&campaign.fit.options, outcome));
@@ -27,7 +29,14 @@ fn rig(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> String {
             "Specimens were struck by a pendulum with a moment of inertia of {} kg m² about its \
              pivot, {} m from pivot to contact, a mass of {} kg and its centre of mass {} m from \
              the pivot (effective mass at the contact {mass} kg; acceleration of gravity {} m/s²).",
-            rig.inertia, rig.arm, rig.mass, rig.centre_of_mass, rig.gravity
+            match outcome.estimated.get("inertia") {
+                Some(own) => plain(own.value),
+                None => rig.inertia.to_string(),
+            },
+            rig.arm,
+            rig.mass,
+            rig.centre_of_mass,
+            rig.gravity
         ),
         RigPlan::Carriage {
             mass: plan,
@@ -35,6 +44,9 @@ fn rig(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> String {
             ..
         } => {
             let known = match plan {
+                MassPlan::Given { .. } if outcome.estimated.get("mass").is_some() => {
+                    "estimated, see below".to_owned()
+                }
                 MassPlan::Given { .. } => "as given".to_owned(),
                 MassPlan::FromImpulse => format!(
                     "found from impulse and change of velocity of {} impacts, standard \
@@ -50,6 +62,23 @@ fn rig(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> String {
             )
         }
     }
+}
+
+/// What of the bench was estimated, and how.
+fn estimated(outcome: &CampaignOutcome) -> Option<String> {
+    let parts = outcome.estimated.0.iter().map(|(name, own)| {
+        let unit = if own.unit == "1" { "" } else { &own.unit };
+        let text = format!("{name} = {} ± {} {unit}", plain(own.value), plain(own.sd));
+        format!("{} ({} impacts)", text.trim_end(), own.impacts)
+    });
+    let parts: Vec<String> = parts.collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "These quantities of the bench were estimated from all impacts together, by Newton's \
+             law for force and displacement: {}. Their uncertainty is part of every interval.",
+            parts.join("; ")
+        )
+    })
 }
 
 fn signals(campaign: &ImpactCampaign) -> String {

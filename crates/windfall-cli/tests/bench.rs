@@ -170,6 +170,15 @@ fn recovers_inertia_gain_and_delay_that_are_asked_for() {
         one["impacts"][0]["parameters"],
         outcome["impacts"][0]["parameters"]
     );
+    // A paper's methods say where the value is from.
+    let (status, _, told) = windfall("report campaign", folder.path());
+    assert_eq!(status, Some(0), "{told}");
+    let report = folder.path().join("campaign/report/report.html");
+    let report = std::fs::read_to_string(report).unwrap();
+    assert!(
+        report.contains("estimated from all impacts together")
+            && report.contains("inertia = 0.0143")
+    );
     // What is given with an uncertainty is averaged with what the impacts say.
     tell(folder.path(), "kg m^2\"", "kg m^2 ± 5 %\"");
     let (both, narrower) = value(&fitted(folder.path()), "inertia");
