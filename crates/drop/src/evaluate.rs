@@ -5,15 +5,13 @@ use crate::measured::{
 };
 use crate::read::{DropCampaign, PlatePlan, drop_of};
 use std::f64::consts::TAU;
-use windfall_campaign::measure::measured::{
-    MeasuredItem, MeasuredValue, plain_value, value_with_sd,
-};
 use windfall_campaign::recording::channel::channel_samples;
 use windfall_campaign::recording::read::recording_path;
 use windfall_campaign::settings::model::ImpactEntry;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
+use windfall_measure::measured::{MeasuredItem, MeasuredValue, plain_value, value_with_sd};
 use windfall_signal::bounce::find::find_bounces;
 use windfall_signal::bounce::train::{Bounce, BounceOptions, BounceTrain, PlateRinging};
 use windfall_signal::recording::{Channel, Quantity, Recording, Times};

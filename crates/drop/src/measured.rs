@@ -1,11 +1,9 @@
 //! What is kept of a drop.
 
 use serde::{Deserialize, Deserializer, Serialize};
-use windfall_campaign::measure::measured::{
-    MeasuredItem, MeasuredItems, MeasuredValue, value_with_sd,
-};
 use windfall_campaign::pipeline::evaluate::Document;
 use windfall_campaign::store::documents::StoredValue;
+use windfall_measure::measured::{MeasuredItem, MeasuredItems, MeasuredValue, value_with_sd};
 use windfall_signal::uncertain::Uncertain;
 
 /// A value with its standard uncertainty, as it is kept; SI.

@@ -1,7 +1,7 @@
 //! What was done to recordings of drops on a plate, in the words of a methods section.
 
 use crate::read::{DropCampaign, PlatePlan};
-use windfall_campaign::measure::words::{SPREAD, percent, plain, threshold_text};
+use windfall_measure::words::{SPREAD, percent, plain, threshold_text};
 use windfall_signal::bounce::train::StaticLevel;
 
 /// Drops on a plate.

@@ -3,11 +3,11 @@
 use crate::evaluate::height_text;
 use crate::measured::{Known, MeasuredDrop, MeasuredRinging};
 use crate::read::{DropCampaign, PlatePlan};
-use windfall_campaign::measure::measured::{MeasuredItem, plain_value, value_with_sd};
 use windfall_drop_rig::rig::Plate;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
+use windfall_measure::measured::{MeasuredItem, plain_value, value_with_sd};
 use windfall_signal::ringing::plate::{HeightTable, PlateDynamics, height_table, plate_dynamics};
 use windfall_signal::uncertain::Uncertain;
 

@@ -7,12 +7,12 @@ use crate::methods::methods_of_drops;
 use crate::plate_ringing::plate_items;
 use crate::read::{DropCampaign, drop_of, read_drop};
 use std::path::Path;
-use windfall_campaign::measure::kind::{FoundItems, MeasuredResults, Measurement};
-use windfall_campaign::measure::measured::{ShownTables, ShownValue, shown};
 use windfall_campaign::recording::read::read_recording;
 use windfall_campaign::settings::model::{Campaign, ImpactEntry};
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_files::error::Error;
+use windfall_measure::kind::{FoundItems, MeasuredResults, Measurement};
+use windfall_measure::measured::{ShownTables, ShownValue, shown};
 use windfall_signal::recording::Recording;
 
 /// What the table of drops shows.

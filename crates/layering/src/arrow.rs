@@ -21,6 +21,10 @@ const ARROWS: &[(&str, &str)] = &[
         "campaign",
         "cards draw files formats source identify contact signal statistics numerics",
     ),
+    (
+        "measure",
+        "campaign draw files identify contact signal numerics",
+    ),
     ("inspect", "campaign draw files formats numerics statistics"),
     (
         "simulate",
@@ -32,7 +36,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "drop",
-        "design drop-rig campaign tables cards draw files identify contact signal statistics numerics",
+        "design drop-rig measure campaign tables cards draw files identify contact signal statistics numerics",
     ),
     (
         "scene-run",
@@ -41,23 +45,23 @@ const ARROWS: &[(&str, &str)] = &[
     ("engines", "scene-run files scene contact"),
     (
         "report",
-        "drop campaign cards draw files identify contact signal statistics",
+        "drop measure campaign cards draw files identify contact signal statistics",
     ),
     (
         "workspace",
-        "report drop scene-run campaign draw files formats identify signal",
+        "report drop scene-run measure campaign draw files formats identify signal",
     ),
     (
         "windfall",
-        "drop-rig report drop population simulate campaign cards draw files formats identify contact signal",
+        "drop-rig report drop population simulate measure campaign cards draw files formats identify contact signal",
     ),
     (
         "web",
-        "draw workspace report drop population tables inspect scene-run campaign cards files",
+        "draw workspace report drop population tables inspect scene-run measure campaign cards files",
     ),
     (
         "cli",
-        "web workspace engines scene-run report drop population simulate inspect campaign tables cards draw files",
+        "web workspace engines scene-run report drop population simulate inspect measure campaign tables cards draw files",
     ),
     ("python", "windfall"),
     ("test-data", ""),

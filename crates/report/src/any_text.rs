@@ -2,11 +2,11 @@
 
 use windfall_campaign::impacts::csv::csv_of_campaign;
 use windfall_campaign::impacts::text::text_of_campaign;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::text::{csv_of_measured, text_of_measured};
 use windfall_campaign::settings::kind::CampaignKind;
-use windfall_campaign::taps::text::csv_of_acoustic;
 use windfall_files::error::Error;
+use windfall_measure::any_outcome::AnyOutcome;
+use windfall_measure::taps::text::csv_of_acoustic;
+use windfall_measure::text::{csv_of_measured, text_of_measured};
 
 /// Tables for people.
 pub fn text_of_any(outcome: &AnyOutcome) -> String {

@@ -1,21 +1,21 @@
 //! `windfall fit DIR`, whatever the campaign measures.
 
 use std::path::Path;
-use windfall_campaign::compression::read::CompressionCampaign;
 use windfall_campaign::impacts::run::fit_campaign;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::kind::Measurement;
-use windfall_campaign::measure::measured::MeasuredOutcome;
-use windfall_campaign::measure::run::{ReportedItems, measure_campaign, reported_campaign};
 use windfall_campaign::pipeline::request::FitRequest;
-use windfall_campaign::relaxation::read::RelaxationCampaign;
-use windfall_campaign::repeats::read::RepeatsCampaign;
 use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
 use windfall_campaign::settings::model::Campaign;
-use windfall_campaign::taps::read::AcousticCampaign;
 use windfall_drop::read::DropCampaign;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
+use windfall_measure::any_outcome::AnyOutcome;
+use windfall_measure::compression::read::CompressionCampaign;
+use windfall_measure::kind::Measurement;
+use windfall_measure::measured::MeasuredOutcome;
+use windfall_measure::relaxation::read::RelaxationCampaign;
+use windfall_measure::repeats::read::RepeatsCampaign;
+use windfall_measure::run::{ReportedItems, measure_campaign, reported_campaign};
+use windfall_measure::taps::read::AcousticCampaign;
 
 /// What is done with campaigns of a kind that fits no impacts.
 pub struct MeasurementWork {

@@ -1,9 +1,9 @@
 //! What the report of a campaign that fits no impacts says.
 
-use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, ShownValue, laws_of};
-use windfall_campaign::measure::run::ReportedItems;
-use windfall_campaign::measure::text::{groups_cells, items_cells, of_law, spread_items};
 use windfall_draw::page::{CaptionedTable, Section};
+use windfall_measure::measured::{MeasuredItem, MeasuredOutcome, ShownValue, laws_of};
+use windfall_measure::run::ReportedItems;
+use windfall_measure::text::{groups_cells, items_cells, of_law, spread_items};
 
 /// More rows than this stand in impacts.csv alone.
 const LISTED: usize = 400;

@@ -1,12 +1,12 @@
 //! What was done to the recordings, in the words of a methods section.
 
-use windfall_campaign::measure::words::{filters_text, laws_text, listed, threshold_text};
 use windfall_campaign::result::outcome::CampaignOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, MassPlan, RigPlan};
 use windfall_contact::law::EndRule;
 use windfall_files::text::number::plain;
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::fit::problem::{FitOptions, NoiseModel, Weighting};
+use windfall_measure::words::{filters_text, laws_text, listed, threshold_text};
 use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, Orientation};
 

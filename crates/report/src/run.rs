@@ -10,9 +10,6 @@ use std::path::{Path, PathBuf};
 use windfall_campaign::impacts::findings::findings_once;
 use windfall_campaign::impacts::key::run_options;
 use windfall_campaign::impacts::run::{FittedCampaign, fitted_campaign};
-use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::run::ReportedItems;
-use windfall_campaign::measure::text::findings_of_measured;
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::digests::{Digests, run_origin};
 use windfall_campaign::settings::kind::campaign_kind;
@@ -27,6 +24,9 @@ use windfall_files::provenance::{VERSION, time_now};
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::Cells;
 use windfall_files::write_file::write_whole;
+use windfall_measure::any_outcome::AnyOutcome;
+use windfall_measure::run::ReportedItems;
+use windfall_measure::text::findings_of_measured;
 
 /// Directory of the report in a campaign directory.
 pub const REPORT_DIRECTORY: &str = "report";

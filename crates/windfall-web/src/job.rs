@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::watch;
 use utoipa::ToSchema;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_drop::calibrate::outcome::CalibrateOutcome;
 use windfall_files::error::Error;
+use windfall_measure::any_outcome::AnyOutcome;
 use windfall_population::outcome::PopulationOutcome;
 use windfall_population::ranking::outcome::LawsOutcome;
 

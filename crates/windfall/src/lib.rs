@@ -40,7 +40,6 @@
 /// What another program needs.
 pub mod prelude {
     pub use windfall_campaign::impacts::run::{fit_campaign, fit_recording};
-    pub use windfall_campaign::measure::any_outcome::AnyOutcome;
     pub use windfall_campaign::pipeline::request::{FitRequest, Reuse};
     pub use windfall_campaign::recording::request::RecordingRequest;
     pub use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
@@ -53,5 +52,6 @@ pub mod prelude {
     pub use windfall_files::found::{EstimateOutcome, FailureOutcome, FindingOutcome};
     pub use windfall_files::progress::quiet;
     pub use windfall_identify::rig::simulate::simulate_impact;
+    pub use windfall_measure::any_outcome::AnyOutcome;
     pub use windfall_report::fit_any::fit_any;
 }

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall_campaign::pipeline::request::FitRequest;
+use windfall_measure::any_outcome::AnyOutcome;
+use windfall_measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall_report::fit_any::fit_any;
 use windfall_simulate::compression::{SimulateCompressionRequest, simulate_compression};
 

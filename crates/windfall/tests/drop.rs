@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::{Path, PathBuf};
-use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::settings::template::{TemplateKind, write_template};
 use windfall_drop::calibrate_settings::{RangeUnit, Target};
 use windfall_drop::read::{DropCampaign, PlatePlan, drop_of, read_drop};
+use windfall_measure::any_outcome::AnyOutcome;
+use windfall_measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall_report::any_text::{csv_of_any, text_of_any};
 use windfall_report::fit_any::fit_any;
 use windfall_simulate::drops::{SimulateDropsRequest, simulate_drops};

@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
-use windfall_campaign::measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::settings::template::{TemplateKind, write_template};
+use windfall_measure::any_outcome::AnyOutcome;
+use windfall_measure::measured::{MeasuredItem, MeasuredOutcome, value_of};
 use windfall_report::fit_any::fit_any;
 use windfall_simulate::repeats::{SimulateRepeatsRequest, Spots, simulate_repeats};
 

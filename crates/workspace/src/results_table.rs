@@ -4,11 +4,11 @@
 use crate::campaign_view::{CampaignView, TABLES_DIRECTORY, TableView, view_campaign};
 use std::collections::BTreeMap;
 use std::path::Path;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::table::write::{csv_text, unguarded};
 use windfall_files::write_file::write_whole;
+use windfall_measure::any_outcome::AnyOutcome;
 use windfall_report::any_text::csv_of_any;
 
 /// Name of the table in a campaign directory.

@@ -7,7 +7,6 @@ use crate::campaign_view::{
 use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::kind::STORE_FILE;
@@ -19,6 +18,7 @@ use windfall_files::option_value::unusable;
 use windfall_files::progress::quiet;
 use windfall_files::scratch::sweep_temporary;
 use windfall_files::write_file::sweep;
+use windfall_measure::any_outcome::AnyOutcome;
 use windfall_report::fit_any::fit_any;
 
 /// A directory with campaigns in it, or a campaign.

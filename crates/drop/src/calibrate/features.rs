@@ -9,7 +9,6 @@ use crate::calibrate::outcome::{
 use crate::calibrate::target::{
     CalibrateRig, DropData, INTERVAL, PEAK, TargetCondition, target_problem,
 };
-use windfall_campaign::measure::measured::value_with_sd;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
@@ -25,6 +24,7 @@ use windfall_drop_rig::start::coarse_starts;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::number::plain;
+use windfall_measure::measured::value_with_sd;
 use windfall_tables::regress::findings::finding;
 
 /// A direction that is known no better than to this, relative, is as good as open.

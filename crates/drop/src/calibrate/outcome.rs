@@ -2,9 +2,9 @@
 
 use crate::calibrate::waveform_outcome::WaveformOutcome;
 use serde::Serialize;
-use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::named::Named;
+use windfall_measure::measured::MeasuredValue;
 use windfall_statistics::model::anova::AnovaRow;
 
 /// Everything that a calibration gives.

@@ -24,7 +24,6 @@ use crate::plate_ringing::{PlateEstimate, plate_of};
 use crate::read::{DropCampaign, read_drop};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use windfall_campaign::measure::run::measure_recordings;
 use windfall_campaign::pipeline::evaluate::failure;
 use windfall_campaign::pipeline::request::Reuse;
 use windfall_cards::read_card::write_card;
@@ -35,6 +34,7 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::progress::Progress;
 use windfall_files::provenance::VERSION;
 use windfall_files::write_file::check_outputs;
+use windfall_measure::run::measure_recordings;
 use windfall_tables::regress::findings::finding;
 
 /// Options of a calibration.

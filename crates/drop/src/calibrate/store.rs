@@ -4,13 +4,13 @@
 use crate::calibrate::outcome::CalibrateOutcome;
 use crate::read::DropCampaign;
 use serde_json::json;
-use windfall_campaign::measure::measured::plain_value;
 use windfall_campaign::recording::digests::{campaign_text, recording_digests, run_origin};
 use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::store::documents::{DocumentRecord, StoredValue};
 use windfall_campaign::store::runs::{RunRecord, latest_run, write_run};
 use windfall_files::error::Error;
 use windfall_files::provenance::{REVISION, digest_text};
+use windfall_measure::measured::plain_value;
 
 /// Keeps a calibration, unless the newest run in the store is the same.
 ///

@@ -3,7 +3,6 @@
 
 use crate::calibrate::outcome::{DropOutcome, TargetOutcome};
 use crate::calibrate_settings::{CalibrateSettings, Target};
-use windfall_campaign::measure::measured::{MeasuredValue, value_with_sd};
 use windfall_contact::law::EndRule;
 use windfall_drop_rig::feature_problem::{
     FeatureProblem, MeasuredDrop, MeasuredFeature, RigUncertainty,
@@ -14,6 +13,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
+use windfall_measure::measured::{MeasuredValue, value_with_sd};
 use windfall_signal::uncertain::Uncertain;
 use windfall_tables::regress::findings::finding;
 

@@ -4,13 +4,13 @@ use crate::calibrate::outcome::{CalibrateOutcome, FeaturesOutcome, TargetOutcome
 use crate::calibrate::tables_text::{tables_of, text_of_table};
 use crate::calibrate::waveform_text::{shown_value, text_of_waveform};
 use std::fmt::Write;
-use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::error::Error;
 use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::table::{
     failures_list, findings_list, header_of, page_tables, paragraph, title_lines,
 };
+use windfall_measure::measured::MeasuredValue;
 
 /// Features of the fit that are listed each.
 const LISTED: usize = 24;

@@ -5,7 +5,6 @@ use crate::calibrate::waveform_outcome::{
     WaveformDropOutcome, WaveformOutcome, WaveformParameter, WeakOutcome,
 };
 use crate::read::{DropCampaign, PlatePlan};
-use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
@@ -17,6 +16,7 @@ use windfall_drop_rig::waveform::{
 use windfall_drop_rig::waveform_fit::calibrate_waveform;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_measure::measured::MeasuredValue;
 use windfall_signal::bounce::train::BounceTrain;
 use windfall_signal::uncertain::Uncertain;
 use windfall_tables::regress::findings::finding;

@@ -2,8 +2,8 @@
 //! with them.
 
 use serde::Serialize;
-use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::named::Named;
+use windfall_measure::measured::MeasuredValue;
 
 /// A law calibrated on waveforms.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]

@@ -2,10 +2,10 @@
 
 use crate::calibrate::waveform_outcome::{WaveformOutcome, WaveformParameter};
 use std::fmt::Write;
-use windfall_campaign::measure::measured::MeasuredValue;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{header_of, page_tables};
+use windfall_measure::measured::MeasuredValue;
 
 /// A stiffness with its exponent per millimetre, others in SI.
 pub fn shown_value(parameter: &WaveformParameter) -> &MeasuredValue {

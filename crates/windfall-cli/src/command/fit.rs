@@ -7,11 +7,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
-use windfall_campaign::measure::any_outcome::AnyOutcome;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
 use windfall_inspect::gather::text::text_of_watched;
 use windfall_inspect::gather::watch::watch;
+use windfall_measure::any_outcome::AnyOutcome;
 use windfall_report::any_text::{csv_of_any, text_of_any};
 use windfall_report::fit_any::fit_any;
 

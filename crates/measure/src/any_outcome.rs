@@ -1,0 +1,45 @@
+//! What `fit` gives, whatever the campaign measures.
+
+use crate::measured::MeasuredOutcome;
+use serde::Serialize;
+use windfall_campaign::result::outcome::{CampaignOutcome, StatusOutcome};
+use windfall_files::found::FailureOutcome;
+
+/// What `fit` gives, whatever the campaign measures.
+///
+/// In JSON every kind has `windfall`, `campaign`, `simulated`, `status`,
+/// `impacts` (one entry per result), `failed`, `summary` and `findings`.
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
+#[serde(untagged)]
+pub enum AnyOutcome {
+    /// Laws fitted to single impacts.
+    Impacts(Box<CampaignOutcome>),
+    /// Values of recordings of another kind.
+    Measured(Box<MeasuredOutcome>),
+}
+
+impl AnyOutcome {
+    /// How the results came about.
+    pub fn status(&self) -> &StatusOutcome {
+        match self {
+            Self::Impacts(outcome) => &outcome.status,
+            Self::Measured(outcome) => &outcome.status,
+        }
+    }
+
+    /// What could not be evaluated.
+    pub fn failed(&self) -> &[FailureOutcome] {
+        match self {
+            Self::Impacts(outcome) => &outcome.failed,
+            Self::Measured(outcome) => &outcome.failed,
+        }
+    }
+
+    /// Number of results.
+    pub fn results(&self) -> usize {
+        match self {
+            Self::Impacts(outcome) => outcome.impacts.len(),
+            Self::Measured(outcome) => outcome.impacts.len(),
+        }
+    }
+}
