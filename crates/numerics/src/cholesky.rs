@@ -50,7 +50,14 @@ pub fn lower<const P: usize>(matrix: &[[f64; P]; P]) -> Option<[[f64; P]; P]> {
 /// assert!((x[0] + 0.5).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15);
 /// ```
 pub fn solve<const P: usize>(matrix: &[[f64; P]; P], right: &[f64; P]) -> Option<[f64; P]> {
-    let (lower, scale) = factor(matrix)?;
+    Some(solve_factored(&factor(matrix)?, right))
+}
+
+/// Solution of A x = b with the factors of A.
+fn solve_factored<const P: usize>(
+    (lower, scale): &([[f64; P]; P], [f64; P]),
+    right: &[f64; P],
+) -> [f64; P] {
     let mut x: [f64; P] = std::array::from_fn(|i| right[i] / scale[i]);
     for i in 0..P {
         for k in 0..i {
@@ -64,15 +71,16 @@ pub fn solve<const P: usize>(matrix: &[[f64; P]; P], right: &[f64; P]) -> Option
         }
         x[i] /= lower[i][i];
     }
-    Some(std::array::from_fn(|i| x[i] / scale[i]))
+    std::array::from_fn(|i| x[i] / scale[i])
 }
 
 /// Inverse of a symmetric positive definite matrix; `None` when it is not.
 pub fn inverse<const P: usize>(matrix: &[[f64; P]; P]) -> Option<[[f64; P]; P]> {
+    let factored = factor(matrix)?;
     let mut out = [[0.0; P]; P];
     for j in 0..P {
         let unit = std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 });
-        let column = solve(matrix, &unit)?;
+        let column = solve_factored(&factored, &unit);
         for i in 0..P {
             out[i][j] = column[i];
         }

@@ -4,6 +4,7 @@ use crate::encoder::edge_rate::{CountTimes, edges};
 use crate::finding::Finding;
 use crate::linear_fit::linear_fit;
 use crate::track::{Track, mean_interval};
+use windfall_numerics::cholesky::solve;
 
 /// Steps on either side with which each is compared.
 const NEIGHBOURS: usize = 10;
@@ -27,6 +28,9 @@ const NEAR: f64 = 0.12;
 /// A small jump is at least as long as the way in this many sampling intervals: the rows that
 /// are missing.
 const ROWS: f64 = 3.0;
+
+/// A step below this part of the least needs no fit that agrees to the last digit; 1.
+const NEARLY: f64 = 0.99;
 
 /// The largest jump of a position in a span of time: rows are missing there, or counts.
 ///
@@ -55,6 +59,9 @@ fn lonely_step(track: &Track, times: &[f64], values: &[f64]) -> Option<(f64, f64
         None => CLEAR * track.noise,
     };
     let excess = |i: usize| {
+        if steps[i] <= least {
+            return None;
+        }
         let near = i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(steps.len());
         let others = || near.clone().filter(|&j| j != i);
         let largest = others().map(|j| steps[j]).fold(0.0, f64::max);
@@ -102,17 +109,68 @@ fn small_jump(track: &Track, times: &[f64], values: &[f64], duration: f64) -> Op
         if i + 1 - begin < POINTS.0 || end - i - 1 < POINTS.0 {
             return None;
         }
-        let fit = linear_fit(&points[begin..end], &places[begin..end], |t| {
-            let u = (t - at) / (NEAR * duration);
+        let speed = (places[end - 1] - places[begin]).abs() / (points[end - 1] - points[begin]);
+        let least = ROWS * speed * interval;
+        let (times, values) = (&points[begin..end], &places[begin..end]);
+        let place = |t: f64| (t - at) / (NEAR * duration);
+        if step_between(times, values, i + 1 - begin, place)
+            .is_some_and(|size| size.abs() < NEARLY * least)
+        {
+            return None;
+        }
+        let fit = linear_fit(times, values, |t| {
+            let u = place(t);
             let after = f64::from(u8::from(u > 0.0));
             [1.0, u, u * u, u * u * u, after, after * u]
         })?;
         let (size, sd) = (fit.coefficients[4].abs(), fit.deviations[4]);
-        let speed = (places[end - 1] - places[begin]).abs() / (points[end - 1] - points[begin]);
-        (size > ROWS * speed * interval && size > CLEAR * sd).then_some((at, size, size / sd))
+        (size > least && size > CLEAR * sd).then_some((at, size, size / sd))
     });
     let (at, size, _) = clearest.max_by(|a, b| a.2.total_cmp(&b.2))?;
     Some((at, size))
+}
+
+/// The step alone of the fit in [`small_jump`], from moments: most places are none, and need
+/// no uncertainty. `None` where the functions depend on each other.
+///
+/// * `before`: points before the step
+/// * `place`: u of a time
+fn step_between(
+    times: &[f64],
+    values: &[f64],
+    before: usize,
+    place: impl Fn(f64) -> f64,
+) -> Option<f64> {
+    // Σ uᵖ and Σ uᵖ y of either side, y from the first point on.
+    let side = |times: &[f64], own: &[f64]| {
+        let (mut powers, mut moments) = ([0.0; 7], [0.0; 4]);
+        for (time, value) in times.iter().zip(own) {
+            let (u, y) = (place(*time), value - values[0]);
+            let square = u * u;
+            let of = [1.0, u, square, square * u];
+            for p in 0..4 {
+                powers[p] += of[p];
+                moments[p] += of[p] * y;
+            }
+            for p in 0..3 {
+                powers[4 + p] += of[1 + p] * of[3];
+            }
+        }
+        (powers, moments)
+    };
+    let (left, left_moments) = side(&times[..before], &values[..before]);
+    let (right, right_moments) = side(&times[before..], &values[before..]);
+    let power = |j: usize| if j < 4 { j } else { j - 4 };
+    let matrix: [[f64; 6]; 6] = std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let p = power(i) + power(j);
+            right[p] + if i.max(j) < 4 { left[p] } else { 0.0 }
+        })
+    });
+    let sides = std::array::from_fn(|i| {
+        right_moments[power(i)] + if i < 4 { left_moments[i] } else { 0.0 }
+    });
+    Some(solve(&matrix, &sides)?[4])
 }
 
 #[cfg(test)]
@@ -164,6 +222,26 @@ mod tests {
             (noisy.quantum, noisy.noise) = (Some(1e-7), 1e-6);
             assert_eq!(jump(&noisy, SPAN, 5e-3), None, "{seed}");
         }
+    }
+
+    /// Both ways to the step of the same least squares.
+    #[test]
+    fn closed_form_step_from_moments_is_that_of_the_fit() {
+        let times: Vec<f64> = (0..24)
+            .map(|i| 0.2 + 0.01 * f64::from(i * i % 7 + 7 * i))
+            .collect();
+        let value = |i: usize, t: &f64| 3.0 + 2.0 * t - t * t + 0.01 * (7.0 * t + i as f64).sin();
+        let mut values: Vec<f64> = times.iter().enumerate().map(|(i, t)| value(i, t)).collect();
+        values[11..].iter_mut().for_each(|value| *value += 0.05);
+        let place = |t: f64| t - 0.5 * (times[10] + times[11]);
+        let found = step_between(&times, &values, 11, place).unwrap();
+        let fit = linear_fit(&times, &values, |t| {
+            let u = place(t);
+            let after = f64::from(u8::from(u > 0.0));
+            [1.0, u, u * u, u * u * u, after, after * u]
+        });
+        let expected = fit.unwrap().coefficients[4];
+        assert!((found / expected - 1.0).abs() < 1e-9 && (found - 0.05).abs() < 0.03);
     }
 
     #[test]

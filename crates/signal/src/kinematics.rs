@@ -83,16 +83,21 @@ pub fn smoothing_window(contact_duration: f64, interval: f64) -> usize {
 
 /// Value at `time`, linear between samples and constant outside.
 pub fn value_at(times: &[f64], values: &[f64], time: f64) -> f64 {
+    values_at(times, [values], time)[0]
+}
+
+/// [`value_at`] of several signals with the same times.
+pub fn values_at<const N: usize>(times: &[f64], values: [&[f64]; N], time: f64) -> [f64; N] {
     let after = times.partition_point(|&t| t < time);
     if after == 0 {
-        return values[0];
+        return values.map(|own| own[0]);
     }
     if after == times.len() {
-        return values[after - 1];
+        return values.map(|own| own[after - 1]);
     }
     let (t0, t1) = (times[after - 1], times[after]);
     let part = (time - t0) / (t1 - t0);
-    values[after - 1] + part * (values[after] - values[after - 1])
+    values.map(|own| own[after - 1] + part * (own[after] - own[after - 1]))
 }
 
 #[cfg(test)]

@@ -36,11 +36,13 @@ pub(crate) fn linear_fit<const P: usize>(
         std::array::from_fn(|j| rows.iter().map(|r| r[j] * r[j]).sum::<f64>().sqrt());
     let mut matrix = [[0.0; P]; P];
     let mut right = [0.0; P];
+    // The lower triangle, which is all that the inverse reads.
     for (row, value) in rows.iter().zip(values) {
         for i in 0..P {
-            right[i] += row[i] / size[i] * value;
-            for j in 0..P {
-                matrix[i][j] += row[i] / size[i] * row[j] / size[j];
+            let scaled = row[i] / size[i];
+            right[i] += scaled * value;
+            for j in 0..=i {
+                matrix[i][j] += scaled * row[j] / size[j];
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Whether force and displacement tell of one motion.
 
 use crate::encoder::edge_rate::{CountTimes, edges};
-use crate::kinematics::value_at;
+use crate::kinematics::values_at;
 use crate::linear_fit::{LinearFit, linear_fit, sum};
 use crate::measure::Surroundings;
 use crate::noise::colour::mean_inflation;
@@ -78,8 +78,9 @@ pub(crate) fn check_motion(
         // Place, velocity, acceleration beside the force, gain, gain × delay.
         let row = |t: f64| {
             let u = (t - place.onset) / scale;
-            let lost = |integral: &[f64]| value_at(&force.times, integral, t + delay);
-            [1.0, u, u * u, -lost(&way_lost), -lost(&velocity_lost)]
+            let lost = [&way_lost[..], &velocity_lost];
+            let [way, velocity] = values_at(&force.times, lost, t + delay);
+            [1.0, u, u * u, -way, -velocity]
         };
         let fit = linear_fit(times, places, row)?;
         let (inverse_gain, product) = (fit.coefficients[3], fit.coefficients[4]);

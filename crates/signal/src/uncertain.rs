@@ -70,23 +70,30 @@ pub(crate) fn sd_of_largest(level: &[f64], noise: f64) -> f64 {
             .map(|own| normal_lower(m + own))
             .product::<f64>()
     };
-    let steps = (2.0 * OUT_OF_REACH / STEP) as usize;
-    let (mut mean, mut square, mut before) = (0.0, 0.0, 0.0);
-    for i in 1..=steps {
-        let m = -OUT_OF_REACH + i as f64 * STEP;
-        let now = below_all(m);
-        let (weight, middle) = (now - before, m - 0.5 * STEP);
+    // From the top of the distribution down to where nothing is left of it.
+    let (mut mean, mut square, mut above) = (0.0, 0.0, 1.0);
+    let mut m = OUT_OF_REACH;
+    while above > NOTHING && m > -OUT_OF_REACH {
+        let next = m - STEP;
+        let now = below_all(next);
+        let (weight, middle) = (above - now, m - 0.5 * STEP);
         mean += weight * middle;
         square += weight * middle * middle;
-        before = now;
+        (above, m) = (now, next);
     }
-    noise * (square - mean * mean).max(0.0).sqrt()
+    // Sheppard's correction: each step is as if all of it were at its middle.
+    let variance = square - mean * mean - STEP * STEP / 12.0;
+    noise * variance.max(0.0).sqrt()
 }
 
 /// No sample wins that lies further below the top; standard deviations of the noise.
 const OUT_OF_REACH: f64 = 8.0;
-/// Of the sum over the largest sample; standard deviations of the noise.
-const STEP: f64 = 0.05;
+/// Of the sum over the largest sample; standard deviations of the noise. With the correction
+/// the error falls like exp(−2π² s²/step²), s being the deviation of the largest (0.3 for ten
+/// thousand samples).
+const STEP: f64 = 0.25;
+/// Probability that is left out; 1.
+const NOTHING: f64 = 1e-12;
 
 #[cfg(test)]
 mod tests {
@@ -99,13 +106,13 @@ mod tests {
         let variance = |n: usize| (sd_of_largest(&vec![3.0; n], 0.5) / 0.5).powi(2);
         for (n, expected) in [(1, 1.0), (2, 0.681_69), (5, 0.447_53), (10, 0.344_34)] {
             assert!(
-                (variance(n) / expected - 1.0).abs() < 2e-3,
+                (variance(n) / expected - 1.0).abs() < 2e-5,
                 "{n}: {}",
                 variance(n)
             );
         }
         // Samples far below do not compete.
-        assert!((sd_of_largest(&[3.0, -30.0, -30.0], 0.5) / 0.5 - 1.0).abs() < 1e-3);
+        assert!((sd_of_largest(&[3.0, -30.0, -30.0], 0.5) / 0.5 - 1.0).abs() < 1e-9);
         assert_eq!(sd_of_largest(&[1.0], 0.0), 0.0);
     }
 }

@@ -207,7 +207,9 @@ pub fn text_marks(sheet: &Sheet, options: &TextOptions) -> (Marks, Option<Note>)
     };
     let note = match (options.decimal, options.thousands) {
         (None, None) => {
-            let rows = numbers.iter().map(|(row, text)| (*row, vec![*text]));
+            let rows = numbers
+                .iter()
+                .map(|(row, text)| (*row, std::slice::from_ref(text)));
             doubtful_mark(rows, decimal, &[ColumnKind::Numbers])
         }
         _ => None,

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 /// The decimal mark of rows that can be read with either: the mark that they have,
 /// unless what follows it looks like groups of digits.
-pub fn likelier_decimal<'a>(rows: impl Iterator<Item = Vec<&'a str>>, separator: Separator) -> u8 {
+pub fn likelier_decimal<'a>(rows: impl Iterator<Item = &'a [&'a str]>, separator: Separator) -> u8 {
     let mut seen = [false; 2];
     let (mut whole, mut marked) = (BTreeSet::new(), BTreeSet::new());
     for cells in rows {
@@ -42,7 +42,7 @@ pub fn likelier_decimal<'a>(rows: impl Iterator<Item = Vec<&'a str>>, separator:
 ///
 /// * `rows`: lines, counted from 1, with their cells
 pub fn doubtful_mark<'a>(
-    rows: impl Iterator<Item = (usize, Vec<&'a str>)>,
+    rows: impl Iterator<Item = (usize, &'a [&'a str])>,
     decimal: u8,
     kinds: &[ColumnKind],
 ) -> Option<String> {
@@ -56,8 +56,11 @@ pub fn doubtful_mark<'a>(
         let numbers = cells.iter().zip(kinds);
         let numbers = numbers.filter(|(_, kind)| **kind == ColumnKind::Numbers);
         for cell in numbers.map(|(cell, _)| bare(cell)) {
-            match cell.bytes().filter(|b| matches!(b, b'.' | b',')).count() {
+            let marks = cell.bytes().filter(|b| matches!(b, b'.' | b','));
+            match marks.count() {
                 0 => {}
+                // Decimals once more, or no number.
+                1 if decimals_shown && cell.contains(char::from(decimal)) => {}
                 1 if number(cell, Marks::decimal(decimal)).is_some() => {
                     match groups(cell, decimal, other) {
                         true => as_decimals = as_decimals.or(Some((line, cell.to_owned()))),

@@ -49,9 +49,10 @@ impl Notation<'_> {
         }
     }
 
-    /// Like [`Notation::look`], but numbers with any thousands separator count as numbers.
-    pub fn grouped_look(self, text: &str, separator: Separator) -> Look {
-        let plain = self.look(text);
+    /// What a cell looks like where numbers with any thousands separator count as numbers.
+    ///
+    /// * `plain`: what it looks like otherwise
+    pub fn grouped(self, text: &str, plain: Look, separator: Separator) -> Look {
         if plain != Look::Text
             || !bare(text).starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c))
         {

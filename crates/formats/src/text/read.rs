@@ -126,11 +126,14 @@ fn encoded_length(line: &str, encoding: Encoding) -> usize {
 /// Rejects files with many control characters.
 fn check_text(source: &Source, text: &str) -> Result<(), Error> {
     let control = |c: &char| c.is_control() && !c.is_whitespace();
-    let (mut all, mut strange) = (0_usize, 0_usize);
-    for c in text.chars() {
-        all += 1;
-        strange += usize::from(control(&c));
-    }
+    let (all, strange) = match text.is_ascii() {
+        true => {
+            let controls = text.bytes().map(|b| usize::from(b < 32 || b == 127));
+            let blanks = text.bytes().map(|b| usize::from((9..=13).contains(&b)));
+            (text.len(), controls.sum::<usize>() - blanks.sum::<usize>())
+        }
+        false => (text.chars().count(), text.chars().filter(control).count()),
+    };
     if 50 * strange <= all {
         return Ok(());
     }

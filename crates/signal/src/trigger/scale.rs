@@ -190,12 +190,19 @@ pub fn moving_mean(values: &[f64], length: usize) -> Vec<f64> {
         sum += value;
         sums.push(sum);
     }
-    (0..n)
-        .map(|i| {
-            let (first, last) = (i.saturating_sub(half), (i + half + 1).min(n));
-            (sums[last] - sums[first]) / (last - first) as f64
-        })
-        .collect()
+    let mean = |i: usize| {
+        let (first, last) = (i.saturating_sub(half), (i + half + 1).min(n));
+        (sums[last] - sums[first]) / (last - first) as f64
+    };
+    // The windows that are whole, apart: they need no limits.
+    let inner = half.min(n)..n.saturating_sub(half).max(half.min(n));
+    let mut means = Vec::with_capacity(n);
+    means.extend((0..inner.start).map(mean));
+    let whole = (2 * half + 1) as f64;
+    let windows = sums.iter().zip(sums.iter().skip(2 * half + 1));
+    means.extend(windows.map(|(first, last)| (last - first) / whole));
+    means.extend((inner.end..n).map(mean));
+    means
 }
 
 #[cfg(test)]
