@@ -43,6 +43,7 @@ mod oscillation;
 pub mod polynomial;
 mod rate;
 pub mod recording;
+pub mod response;
 pub mod restitution;
 pub mod ringing;
 pub mod spike;
