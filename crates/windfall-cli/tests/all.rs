@@ -34,3 +34,4 @@ mod serve;
 mod several_contacts;
 mod stopped_runs;
 mod user_laws;
+mod velocities;

@@ -24,8 +24,9 @@ use windfall_files::on_threads::on_threads;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
+use windfall_identify::compare::levels::{LevelSource, velocity_levels};
 use windfall_identify::compare::ranking::{
-    LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws, velocity_levels,
+    LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
 };
 use windfall_identify::error::Error as IdentifyError;
 use windfall_identify::fit::problem::LawProblem;
@@ -43,9 +44,6 @@ pub const COMPARED: [&str; 6] = [
 ];
 /// Column of impacts.csv with the velocity level.
 const LEVEL_COLUMN: &str = "level";
-/// Velocities that differ by more than this part belong to different levels,
-/// where no column gives levels; 1.
-const LEVEL_GAP: f64 = 0.08;
 
 /// Ranks laws over the impacts of a campaign: those of the request, those of the
 /// campaign if it names at least two, else [`COMPARED`].
@@ -147,13 +145,16 @@ fn rank(
 
 /// Of the impacts that are compared the one with the middle velocity.
 fn middle_impact(compared: &[usize], fits: &[Vec<Option<Fit>>]) -> Option<usize> {
-    let velocity = |place: usize| {
-        let fit = fits[place].iter().find_map(Option::as_ref);
-        fit.map_or(f64::NAN, |fit| fit.velocity)
-    };
     let mut order = compared.to_vec();
-    order.sort_by(|a, b| velocity(*a).total_cmp(&velocity(*b)));
+    order.sort_by(|a, b| velocity(&fits[*a]).total_cmp(&velocity(&fits[*b])));
     order.get(order.len() / 2).copied()
+}
+
+/// Impact velocity by the law that fits best; m/s.
+fn velocity(fits: &[Option<Fit>]) -> f64 {
+    let found = fits.iter().flatten();
+    let best = found.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    best.map_or(f64::NAN, |fit| fit.velocity)
 }
 
 /// One impact with the best fit of each law over its signals, the best law first.
@@ -223,7 +224,7 @@ fn fits(
     })
 }
 
-/// Levels from the column of impacts.csv, else from the velocities.
+/// Levels from the column of impacts.csv, else from the velocities; says what became of them.
 fn set_levels(
     impacts: &mut [LeveledImpact],
     entries: &[&ImpactEntry],
@@ -237,38 +238,48 @@ fn set_levels(
             .map(|(_, cell)| cell.clone())
     };
     let cells: Option<Vec<String>> = entries.iter().map(|entry| cell(entry)).collect();
-    let levels = match cells {
-        Some(cells) => {
-            let mut numbers = BTreeMap::new();
-            cells
-                .into_iter()
-                .map(|cell| {
-                    let next = numbers.len();
-                    *numbers.entry(cell).or_insert(next)
-                })
-                .collect()
-        }
-        None => {
-            let velocities: Vec<f64> = fits
-                .iter()
-                .map(|fits| {
-                    let fit = fits.iter().find_map(Option::as_ref);
-                    fit.map_or(f64::NAN, |fit| fit.velocity)
-                })
-                .collect();
-            velocity_levels(&velocities, LEVEL_GAP)
-        }
-    };
-    for (impact, level) in impacts.iter_mut().zip(&levels) {
+    let given = cells.map(|cells| {
+        let mut numbers = BTreeMap::new();
+        let numbered = cells.into_iter().map(|cell| {
+            let next = numbers.len();
+            *numbers.entry(cell).or_insert(next)
+        });
+        numbered.collect()
+    });
+    let velocities: Vec<f64> = fits.iter().map(|own| velocity(own)).collect();
+    let levels = velocity_levels(&velocities, given);
+    for (impact, level) in impacts.iter_mut().zip(&levels.of) {
         impact.level = *level;
     }
-    if levels.iter().all(|level| *level == 0) {
+    if levels.source == LevelSource::Thirds {
+        findings.push(FindingOutcome::new(
+            "velocity-thirds",
+            thirds_text(&velocities, &levels.of),
+        ));
+    }
+    if levels.of.iter().all(|level| *level == 0) {
         findings.push(FindingOutcome::new(
             "one-level",
             "all impacts have the same velocity, so prediction at other velocities \
              cannot be tested; laws that differ only in velocity look alike",
         ));
     }
+}
+
+fn thirds_text(velocities: &[f64], levels: &[usize]) -> String {
+    let range = |level: usize| {
+        let own = || velocities.iter().zip(levels).filter(|own| *own.1 == level);
+        let low = own().map(|own| *own.0).fold(f64::INFINITY, f64::min);
+        let high = own().map(|own| *own.0).fold(0.0, f64::max);
+        format!("{} impacts at {low:.3} to {high:.3} m/s", own().count())
+    };
+    format!(
+        "the velocities are continuous, so each third of them is predicted from the two others: \
+         {}, {}, {}",
+        range(0),
+        range(1),
+        range(2)
+    )
 }
 
 /// Ranks the laws over some of the impacts.
