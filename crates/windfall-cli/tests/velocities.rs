@@ -74,3 +74,99 @@ fn recovers_unseen_velocities_where_all_differ() {
     let again = json(line, folder.path());
     assert_eq!(again["laws"], found["laws"]);
 }
+
+fn told<'a>(outcome: &'a Value, code: &str) -> Vec<&'a str> {
+    let found = outcome["findings"].as_array().unwrap().iter();
+    let own = found.filter(|own| own["code"] == code);
+    own.map(|own| own["message"].as_str().unwrap()).collect()
+}
+
+/// Eight fruit of differing stiffness at 0.2, 0.35 and 0.5 m/s, under a law with k and c to be
+/// filled in.
+fn fruit(law: &str) -> Vec<Vec<(String, f64)>> {
+    let one = |number: usize| {
+        let size = 1.0 + 0.1 * ((number * 3) % 8) as f64;
+        let law = law.replace("C", &(1524.0 * size).to_string());
+        let law = law.replace("K", &(753_599.0 * size).to_string());
+        let mut own = [0.2, 0.35, 0.5];
+        own.rotate_left(number % 3);
+        own.map(|velocity| (law.clone(), velocity)).to_vec()
+    };
+    (0..8).map(one).collect()
+}
+
+/// A law with another exponent makes k depend on velocity, which says what the exponent is; the
+/// law that made the impacts has no trend; the report draws both.
+#[test]
+fn recovers_the_exponent_from_k_over_velocity() {
+    let folder = tempfile::tempdir().unwrap();
+    campaign_of(folder.path(), &fruit("power-law(k=6e6,n=1.8,c=C,p=0.5)"));
+    let found = json("fit campaign --law kuwabara-kono", folder.path());
+    let trend = told(&found, "law-velocity-trend");
+    assert_eq!(trend.len(), 1, "{}", found["findings"]);
+    assert!(
+        trend[0].contains("k rises by ") && trend[0].contains("within fruit"),
+        "{trend:?}"
+    );
+    let (_, exponent) = trend[0].split_once("an exponent of ").unwrap();
+    let exponent: f64 = exponent.split(' ').next().unwrap().parse().unwrap();
+    assert!((exponent - 1.8).abs() < 0.05, "{trend:?}");
+    let right = json("fit campaign --law power-law(n=1.8,p=0.5)", folder.path());
+    assert_eq!(told(&right, "law-velocity-trend"), [""; 0]);
+    let (status, _, said) = windfall("report campaign --law kuwabara-kono", folder.path());
+    assert_eq!(status, Some(0), "{said}");
+    let page = fs::read_to_string(folder.path().join("campaign/report/report.html")).unwrap();
+    assert!(page.contains("kuwabara-kono: what should be constant"));
+}
+
+/// Stiffness that grows along the campaign, with and without times of day; a time that is none.
+#[test]
+fn recovers_a_drift_of_the_fruit() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = |number: usize| {
+        let grown = 1.0 + 0.02 * number as f64 + 0.01 * ((number * 7) % 5) as f64;
+        let law = format!("kuwabara-kono(k={},c=1524)", 753_599.0 * grown);
+        vec![(law, 0.2 + 0.3 * ((number * 5) % 16) as f64 / 15.0)]
+    };
+    campaign_of(folder.path(), &(0..16).map(one).collect::<Vec<_>>());
+    let found = json("fit campaign", folder.path());
+    let drift = told(&found, "order-trend");
+    assert_eq!(drift.len(), 1, "{}", found["findings"]);
+    assert!(
+        drift[0].contains("k of kuwabara-kono rises by ") && drift[0].contains("not the sensor"),
+        "{drift:?}"
+    );
+    assert_eq!(told(&found, "law-velocity-trend"), [""; 0]);
+    let slope = found["trends"].as_array().unwrap().iter();
+    let mut slope = slope.filter(|own| own["quantity"] == "k" && own["over"] == "order");
+    let slope = slope.next().unwrap()["slope"].as_f64().unwrap();
+    // ln of 1.30 to 1.36 from first to last.
+    assert!((0.2..0.36).contains(&slope), "{slope}");
+
+    let path = folder.path().join("campaign/impacts.csv");
+    let table = fs::read_to_string(&path).unwrap();
+    let timed = |wrong: bool| {
+        let rows = table.lines().enumerate().map(|(line, row)| match line {
+            0 => format!("{row},time_of_day\n"),
+            9 if wrong => format!("{row},2 o'clock\n"),
+            _ => format!(
+                "{row},2026-05-03 {:02}:{:02}\n",
+                9 + line / 4,
+                15 * (line % 4)
+            ),
+        });
+        fs::write(&path, rows.collect::<String>()).unwrap();
+        json("fit campaign", folder.path())
+    };
+    let found = timed(false);
+    let hours = found["trends"].as_array().unwrap().iter();
+    let hours = hours.filter(|own| own["over"] == "time_of_day").count();
+    assert_eq!(hours, 4);
+    let found = timed(true);
+    let unread = told(&found, "time-of-day-unread");
+    assert!(
+        unread[0].contains("line 10, column time_of_day: \"2 o'clock\""),
+        "{unread:?}"
+    );
+    assert!(!found["trends"].to_string().contains("time_of_day"));
+}

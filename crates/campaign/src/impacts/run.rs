@@ -16,6 +16,8 @@ use crate::result::counted::mark_left_out;
 use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::stacked::law_misfits;
 use crate::result::summary::{summarise, summarise_groups};
+use crate::result::trend::{times_of, trends};
+use crate::result::trend_findings::trend_findings;
 use crate::settings::kind::CAMPAIGN_FILE;
 use crate::settings::model::{BenchFound, Campaign, ImpactCampaign, ImpactEntry};
 use crate::settings::read::read_campaign;
@@ -24,6 +26,7 @@ use std::path::Path;
 use windfall_cards::law_use::{LawUse, findings_of_use};
 use windfall_cards::read_card::write_card;
 use windfall_contact::expression::typical;
+use windfall_contact::laws::kind::LawKind;
 use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -281,9 +284,14 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let bench = pooled_bench(&impacts);
     let of_bench = bench_findings(&rig.rig, &campaign.bench.sd, &bench);
     let misfits = law_misfits(&impacts, !of_bench.is_empty());
+    let times = times_of(&campaign.shared);
+    let trends = trends(&impacts, &times);
+    let laws: Vec<LawKind> = campaign.fit.laws.iter().map(|law| law.kind).collect();
+    let of_trends = trend_findings(&trends, &laws, !of_bench.is_empty(), &misfits);
     let estimated = estimated(campaign);
     let far = far_estimates(&estimated, &impacts);
     findings.extend(of_bench.into_iter().chain(far).chain(misfits));
+    findings.extend(of_trends.into_iter().chain(times.unread));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));
     CampaignOutcome {
@@ -293,6 +301,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         effective_mass: rig.mass,
         bench,
         estimated,
+        trends,
         status: evaluated.status,
         impacts,
         failed: std::mem::take(&mut evaluated.failed),

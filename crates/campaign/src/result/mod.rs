@@ -8,3 +8,5 @@ pub mod outcome;
 pub mod quantity;
 pub mod stacked;
 pub mod summary;
+pub mod trend;
+pub mod trend_findings;
