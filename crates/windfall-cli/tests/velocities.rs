@@ -170,3 +170,70 @@ fn recovers_a_drift_of_the_fruit() {
     );
     assert!(!found["trends"].to_string().contains("time_of_day"));
 }
+
+/// A second comparison or population is that of the store, and is found anew after each change
+/// that it depends on; an answer that was altered is refused.
+#[test]
+fn conserves_answers_in_the_store_until_something_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path();
+    campaign_of(own, &fruit("kuwabara-kono(k=K,c=C)")[..3]);
+    let store = own.join("campaign/results.sqlite");
+    let (laws, population) = (
+        "laws campaign --law kuwabara-kono --law hertz",
+        "population campaign",
+    );
+    let first = (json(laws, own), json(population, own));
+    let stored = fs::read(&store).unwrap();
+    let again = (json(laws, own), json(population, own));
+    assert_eq!(
+        (&again, fs::read(&store).unwrap()),
+        (&first, stored.clone())
+    );
+
+    // What was asked for, the tables, and the recordings.
+    let fewer = json("laws campaign --law hertz --law kelvin-voigt", own);
+    assert_eq!(fewer["laws"].as_array().unwrap().len(), 2);
+    assert_ne!(fewer["laws"], first.0["laws"]);
+    let table = own.join("campaign/impacts.csv");
+    let rows = fs::read_to_string(&table).unwrap();
+    let left = rows.lines().enumerate().map(|(line, row)| match line {
+        0 => format!("{row},exclude\n"),
+        3 => format!("{row},yes\n"),
+        _ => format!("{row},\n"),
+    });
+    fs::write(&table, left.collect::<String>()).unwrap();
+    assert_eq!(json(laws, own)["impacts"], 8);
+    assert_eq!(json(population, own)["impacts"], 8);
+    fs::write(&table, &rows).unwrap();
+    assert_eq!((json(laws, own), json(population, own)), first);
+    let recording = own.join("campaign/raw/i00-0.csv");
+    let samples = fs::read_to_string(&recording).unwrap();
+    fs::write(&recording, samples.replacen("0.0", "0.1", 1)).unwrap();
+    assert_ne!(json(laws, own), first.0);
+    fs::write(&recording, samples).unwrap();
+
+    // Altered behind our back.
+    let mut bytes = fs::read(&store).unwrap();
+    let word = b"\"verdict\":\"sure\"";
+    let places = bytes
+        .windows(word.len())
+        .enumerate()
+        .filter(|own| own.1 == word);
+    let places: Vec<usize> = places.map(|own| own.0).collect();
+    assert!(!places.is_empty());
+    for place in places {
+        bytes[place + word.len() - 2] = b'f';
+    }
+    fs::write(&store, bytes).unwrap();
+    let (status, _, told) = windfall(laws, own);
+    assert_eq!(status, Some(1), "{told}");
+    assert!(told.contains("laws") && told.contains("--refit"), "{told}");
+    assert_eq!(json(&format!("{laws} --refit"), own), first.0);
+    assert_eq!(json(laws, own), first.0);
+
+    // A fit has its own run; its answers do not hide behind those of the campaign.
+    let (status, out, told) = windfall("fit campaign", own);
+    assert_eq!(status, Some(0), "{told}");
+    assert!(out.contains("9 impacts"), "{out}");
+}

@@ -8,8 +8,9 @@ use windfall_campaign::impacts::bench::find_rig;
 use windfall_campaign::impacts::figure_impact::figure_of_impact;
 use windfall_campaign::impacts::fit::law_problem;
 use windfall_campaign::impacts::mass::RigFound;
+use windfall_campaign::pipeline::answer::{Question, answer};
 use windfall_campaign::pipeline::evaluate::failure;
-use windfall_campaign::pipeline::request::{FitRequest, apply_request};
+use windfall_campaign::pipeline::request::{FitRequest, Reuse, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::counted::left_out_under_all_laws;
 use windfall_campaign::result::fit_outcome::impact_outcome;
@@ -71,9 +72,7 @@ pub fn rank_campaign(
             .filter_map(|name| parse_law(name).ok())
             .collect();
     }
-    on_threads(request.threads, || {
-        rank(&campaign, request.figures.as_ref(), progress)
-    })
+    on_threads(request.threads, || rank(&campaign, request, progress))
 }
 
 /// What one recording gives.
@@ -85,14 +84,37 @@ struct Fitted {
     outcomes: Vec<ImpactOutcome>,
 }
 
+/// Figures are drawn of a comparison that is made now, of which the fits are at hand.
 fn rank(
     campaign: &ImpactCampaign,
-    figures: Option<&FigureFolder>,
+    request: &FitRequest,
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
     let mut campaign = campaign.clone();
     let rig = find_rig(&mut campaign)?;
-    let campaign = &campaign;
+    let question = Question {
+        campaign: &campaign,
+        rig: &rig,
+        command: "laws",
+        options: String::new(),
+    };
+    let figures = request.figures.as_ref();
+    let reuse = match figures {
+        Some(_) => Reuse::Nothing,
+        None => request.reuse,
+    };
+    let work = || compared(&campaign, &rig, figures, progress);
+    let (mut outcome, told) = answer(&question, reuse, work)?;
+    outcome.findings.extend(told);
+    Ok(outcome)
+}
+
+fn compared(
+    campaign: &ImpactCampaign,
+    rig: &RigFound,
+    figures: Option<&FigureFolder>,
+    progress: Progress,
+) -> Result<LawsOutcome, Error> {
     let problems: Vec<LawProblem> = campaign
         .fit
         .laws
@@ -100,7 +122,7 @@ fn rank(
         .map(|law| law_problem(law, &campaign.fit.free))
         .collect();
     let results = for_each(progress, campaign.shared.entries.len(), |item| {
-        fits(campaign, &campaign.shared.entries[item], &rig, &problems)
+        fits(campaign, &campaign.shared.entries[item], rig, &problems)
     })?;
     let (mut impacts, mut fitted, mut entries, mut failed) = (vec![], vec![], vec![], vec![]);
     let outcomes = results.iter().flatten().flat_map(|own| &own.outcomes);
@@ -137,7 +159,7 @@ fn rank(
     if let Some(folder) = figures {
         write_paintings(folder, &[laws_painting(&outcome)?])?;
         if let Some(place) = shown {
-            draw_impact(campaign, &rig, entries[place], &problems, &outcome, folder)?;
+            draw_impact(campaign, rig, entries[place], &problems, &outcome, folder)?;
         }
     }
     Ok(outcome)
@@ -326,7 +348,7 @@ fn outcome(
         simulated: campaign.shared.simulated.clone(),
         impacts: ranking.impacts,
         levels: ranking.levels,
-        verdict,
+        verdict: verdict.to_owned(),
         meaning,
         laws: ranking
             .laws
