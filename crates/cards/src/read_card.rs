@@ -238,9 +238,13 @@ fn wrong(path: &Path, problem: String) -> Error {
 }
 
 fn defined(name: &str, card: &CardDefinition) -> UserLawDefinition {
-    let force = match &card.force {
-        Some(formula) => UserForce::Formula(formula.clone()),
-        None => UserForce::Table(ForceTable {
+    let force = match (&card.force, &card.unloading) {
+        (Some(formula), None) => UserForce::Formula(formula.clone()),
+        (Some(formula), Some(unloading)) => UserForce::WithMemory {
+            force: formula.clone(),
+            unloading: unloading.clone(),
+        },
+        (None, _) => UserForce::Table(ForceTable {
             displacement: card.displacement.clone().unwrap_or_default(),
             force: card.table_force.clone().unwrap_or_default(),
             damping: card.damping.clone(),
@@ -279,6 +283,7 @@ pub fn card_definition(kind: LawKind) -> Option<CardDefinition> {
     });
     let mut card = CardDefinition {
         force: None,
+        unloading: None,
         displacement: None,
         table_force: None,
         damping: None,
@@ -286,6 +291,10 @@ pub fn card_definition(kind: LawKind) -> Option<CardDefinition> {
     };
     match &definition.force {
         UserForce::Formula(formula) => card.force = Some(formula.clone()),
+        UserForce::WithMemory { force, unloading } => {
+            card.force = Some(force.clone());
+            card.unloading = Some(unloading.clone());
+        }
         UserForce::Table(table) => {
             card.displacement = Some(table.displacement.clone());
             card.table_force = Some(table.force.clone());

@@ -7,6 +7,7 @@ mod batch;
 mod compression;
 mod intervals;
 mod laws;
+mod memory_law;
 mod population;
 mod population_impacts;
 mod population_posterior;
