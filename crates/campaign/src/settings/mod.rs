@@ -12,6 +12,7 @@ pub mod kind;
 pub mod model;
 pub mod open_options;
 pub mod read;
+pub mod response;
 pub mod rig;
 pub mod shared;
 pub mod tables;

@@ -4,6 +4,7 @@
 use crate::finding::Finding;
 use crate::fit::problem::{FitOptions, NoiseModel, Weighting};
 use crate::fit::residual::Rows;
+use crate::fit::response::Shift;
 use crate::fit::uncertainty::{inflation, standardised};
 use crate::noise::blocks::{block_length, mean_noise, means, samples_between};
 use crate::noise::edges::{EdgeSamples, edge_samples};
@@ -30,6 +31,8 @@ pub(crate) struct NoisePlan {
     pub noise: [f64; QUANTITIES],
     /// Correlation of the noise of successive samples as they were recorded; 1.
     pub persistence: [f64; QUANTITIES],
+    /// What the instruments add, where it has been taken off.
+    pub shift: Option<Shift>,
 }
 
 /// A quantity of an impact, if it was measured.
@@ -68,6 +71,7 @@ pub(crate) fn noise_plan(
         edges: None,
         noise: [f64::NAN; QUANTITIES],
         persistence: [0.0; QUANTITIES],
+        shift: None,
     };
     for (quantity, series) in used.iter().filter(|_| modelled) {
         plan.persistence[*quantity as usize] = series.persistence.unwrap_or(0.0);
@@ -281,7 +285,10 @@ impl NoisePlan {
         let (ratio, rest) = mean_noise(persistence, length);
         let mut noise = self.noise;
         noise[quantity as usize] = series.noise * ratio.sqrt();
-        let group = block_group(impact, quantity, series, length, rest, &noise);
+        let mut group = block_group(impact, quantity, series, length, rest, &noise);
+        if let Some(shift) = &self.shift {
+            group.shift(|quantity, time| -shift.at(quantity, time));
+        }
         Some(Coloured {
             group: (group, noise[quantity as usize], means(residuals, length)),
             persistence,
