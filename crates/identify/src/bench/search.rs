@@ -1,11 +1,9 @@
 //! Least squares over all impacts of a bench: common parameters, and each fit's own besides.
 
-use crate::bench::cause::Cause;
+use crate::bench::kind::{Cause, MOST};
 use crate::bench::residuals::{BenchFault, BenchResiduals};
 use windfall_numerics::least_squares::{Bounds, LeastSquares, NormalEquations, Options, minimise};
 
-/// Parameters of a cause at most: gain, delay, frequency, damping, compliance.
-pub(crate) const MOST: usize = 5;
 /// Step of the derivatives, in the coordinate of each parameter.
 const STEP: f64 = 1e-4;
 /// Frequencies tried, from so many swings in a contact up; and how they rise.

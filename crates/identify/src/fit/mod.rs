@@ -23,6 +23,7 @@ mod residual_sums;
 pub(crate) mod response;
 pub mod result;
 mod search;
+mod settle;
 pub(crate) mod solve;
 mod starting_values;
 mod types;
