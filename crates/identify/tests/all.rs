@@ -6,6 +6,7 @@ mod allocation;
 mod batch;
 mod compression;
 mod intervals;
+mod known;
 mod laws;
 mod population;
 mod population_impacts;
