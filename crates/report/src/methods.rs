@@ -1,8 +1,7 @@
 //! What was done to the recordings, in the words of a methods section.
 
 use windfall_campaign::result::outcome::CampaignOutcome;
-use windfall_campaign::settings::known::KnownKind;
-use windfall_campaign::settings::model::{ImpactCampaign, MassPlan, RigPlan};
+use windfall_campaign::settings::model::{ImpactCampaign, KnownKind, MassPlan, RigPlan};
 use windfall_contact::law::EndRule;
 use windfall_files::text::number::plain;
 use windfall_identify::fit::interval::IntervalMethod;

@@ -5,8 +5,10 @@ use crate::settings::fit::{
     noise_counts, quantities_named, unknown_parameter,
 };
 use crate::settings::kind::CampaignKind;
-use crate::settings::known::{KnownKind, KnownText, has, known_of};
-use crate::settings::model::{Campaign, FitPlan, ImpactCampaign, ImpactEntry, Specimen};
+use crate::settings::known::{has, known_of};
+use crate::settings::model::{
+    Campaign, FitPlan, ImpactCampaign, ImpactEntry, KnownKind, KnownText, Specimen,
+};
 use std::path::PathBuf;
 use windfall_cards::user_laws::read::laws_of_option;
 use windfall_contact::expression::{LawExpression, parse_law_among};

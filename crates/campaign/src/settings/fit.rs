@@ -1,8 +1,8 @@
 //! `[fit]` of campaign.toml.
 
 use crate::settings::file::{FitFile, QuantityText};
-use crate::settings::known::{KnownKind, KnownText, known_of};
-use crate::settings::model::FitPlan;
+use crate::settings::known::known_of;
+use crate::settings::model::{FitPlan, KnownKind, KnownText};
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;

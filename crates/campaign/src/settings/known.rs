@@ -1,7 +1,6 @@
 //! `[fit.prior]` and `[fit.bounds]` of campaign.toml, and the options in their place.
 
-use crate::settings::model::FitPlan;
-use serde::Serialize;
+use crate::settings::model::{FitPlan, KnownKind, KnownText};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
 use windfall_contact::parameter::{IMPACT_VELOCITY, MASS};
@@ -17,37 +16,6 @@ const NUISANCES: [(&str, &str); 3] = [
     ("onset", "s"),
     ("displacement_offset", "m"),
 ];
-
-/// Which of the two things can be known of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum KnownKind {
-    /// "2.4e5 ± 0.3e5 N/m^1.5"
-    Prior,
-    /// "0 … 50 N s/m"
-    Bounds,
-}
-
-impl KnownKind {
-    /// Its key below `[fit]`, and its option without dashes.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Prior => "prior",
-            Self::Bounds => "bounds",
-        }
-    }
-}
-
-/// What is known of a parameter, as it was written.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct KnownText {
-    /// Which of the two.
-    pub kind: KnownKind,
-    /// The parameter.
-    pub name: String,
-    /// The quantity.
-    pub text: String,
-}
 
 /// What is known of the parameters of each law of a plan, and of its nuisances.
 ///

@@ -1,7 +1,7 @@
 //! A campaign: channels, specimens, entries, and of impacts rig and options, in SI units.
 
 use crate::settings::kind::CampaignKind;
-use crate::settings::known::{KnownKind, KnownText};
+use serde::Serialize;
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
@@ -199,6 +199,37 @@ pub struct FitPlan {
     pub user: Vec<LawKind>,
     /// Cost function and treatment of the nuisance parameters.
     pub options: FitOptions,
+}
+
+/// Which of the two things can be known of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum KnownKind {
+    /// "2.4e5 ± 0.3e5 N/m^1.5"
+    Prior,
+    /// "0 … 50 N s/m"
+    Bounds,
+}
+
+impl KnownKind {
+    /// Its key below `[fit]`, and its option without dashes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Prior => "prior",
+            Self::Bounds => "bounds",
+        }
+    }
+}
+
+/// What is known of a parameter, as it was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct KnownText {
+    /// Which of the two.
+    pub kind: KnownKind,
+    /// The parameter.
+    pub name: String,
+    /// The quantity.
+    pub text: String,
 }
 
 impl FitPlan {
