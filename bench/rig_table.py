@@ -11,25 +11,71 @@ import os
 import pathlib
 import sys
 import tempfile
+import typing
 
 import fault_impacts
 import fault_table
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.signal import cont2discrete, lfilter
 
 # Samples of the force for each that is recorded, where a sensor swings or a filter acts.
 FINE = 10
 DAMPED = np.sqrt(0.5)
 
-# Name: what is told wrong, what the instrument does, the quantity to estimate and its true
-# value, and the findings that name the fault.
+
+
+class Rig(typing.NamedTuple):
+    """What is wrong with a bench."""
+
+    # What campaign.toml says over what is true.
+    told: dict = {}
+    # What the instruments do.
+    instrument: dict = {}
+    # What is estimated to mend it, and the true values.
+    estimate: tuple = ()
+    truth: dict = {}
+    # Findings that name it, and words of which one of them must have some.
+    codes: tuple = ()
+    words: tuple = ("",)
+
+
+SWING = (2e3, 0.05)
+ARM = (1.5e3, 0.02, 1e-7)
 RIGS = {
-    "as told": ({}, {}, None, None, ()),
-    "inertia 5 % too large": ({"inertia": 1.05}, {}, "inertia", fault_impacts.INERTIA, ("bench-gain",)),
-    "sensitivity 5 % too small": ({}, {"gain": 1.05}, "force.gain", 1.05, ("bench-gain",)),
-    "force 20 us late": ({}, {"delay": 20e-6}, "force.delay", 20e-6, ("bench-delay",)),
-    "filter of 5 kHz": ({}, {"pole": (5e3, DAMPED)}, "force.delay", None, ("bench-delay",)),
-    "resonance at 2 kHz": ({}, {"pole": (2e3, 0.05)}, "force.delay", None, ("bench-delay", "bench-gain")),
+    "as told": Rig(),
+    "inertia 5 % too large": Rig(
+        told={"inertia": 1.05},
+        estimate=("inertia",),
+        truth={"inertia": fault_impacts.INERTIA},
+        codes=("bench-gain",),
+    ),
+    "sensitivity 5 % too small": Rig(
+        instrument={"gain": 1.05}, estimate=("force.gain",), truth={"force.gain": 1.05}, codes=("bench-gain",)
+    ),
+    "force 20 us late": Rig(
+        instrument={"delay": 20e-6}, estimate=("force.delay",), truth={"force.delay": 20e-6}, codes=("bench-delay",)
+    ),
+    # Of second order, which a delay describes.
+    "filter of 5 kHz": Rig(instrument={"pole": (5e3, DAMPED)}, estimate=("force.delay",), codes=("bench-delay",)),
+    "first-order filter of 5 kHz": Rig(
+        instrument={"filter": 5e3}, estimate=("force_filter",), truth={"force_filter": 5e3}, codes=("bench-delay",)
+    ),
+    "resonance at 2 kHz": Rig(
+        instrument={"pole": SWING},
+        estimate=("sensor_frequency",),
+        truth={"sensor_frequency": SWING[0], "sensor_damping": SWING[1]},
+        codes=("bench-cause",),
+        words=("best explained by a force sensor that swings",),
+    ),
+    "arm mode at 1.5 kHz": Rig(
+        instrument={"arm": ARM},
+        estimate=("arm_frequency",),
+        truth={"arm_frequency": ARM[0], "arm_damping": ARM[1], "arm_compliance": ARM[2]},
+        codes=("bench-cause",),
+        words=("best explained by an arm",),
+    ),
+    "encoder half a count off": Rig(instrument={"lines": 0.5}),
 }
 
 # Fruit of another law than is fitted, from the simulator of another hand.
@@ -38,10 +84,13 @@ LAWS = {
     "strong yield": lambda rig, k, c: rig.yielding(k, 0.5 * c, 0.0003, 0.5),
     "exponent 1.8": lambda rig, k, c: rig.power(8.26 * k, 1.8, c, 0.5),
     "Hunt and Crossley": lambda rig, k, c: rig.hc(k, k),
+    "moving base": None,
 }
+# Frequency, damping and compliance of a base that the fruit stands on: Hz, 1, m/N.
+BASE = (400.0, 0.05, 2e-7)
 RIG = pathlib.Path(os.environ.get("WINDFALL_RIG", "../shared/independent/rig.py"))
 if RIG.is_file():
-    RIGS |= {name: ({}, {}, None, None, ("law-misfit",)) for name in LAWS}
+    RIGS |= {name: Rig(codes=("law-misfit",)) for name in LAWS}
 else:
     print("not made: fruit of other laws, whose simulator is not there", file=sys.stderr)
 
@@ -55,14 +104,54 @@ def other_hand():
 
 def motion_of(rig, law, k, c, velocity):
     """A motion under another law, as `fault_impacts.motion` gives one."""
+    if LAWS[law] is None:
+        return on_a_base(rig, k, c, velocity)
     at, end, _ = rig.integrate(LAWS[law](rig, k, c), rig.MEFF, velocity, 0.05, omega2=rig.OMEGA2, rtol=1e-9)
     return (lambda times: at(times)[::2]), end
 
-def second_order(force, interval, frequency, damping):
-    """A sensor or filter with two poles."""
+
+def on_a_base(rig, k, c, velocity):
+    """Displacement and force of a fruit whose base swings under the force."""
+    frequency, damping, compliance = BASE
     w = 2 * np.pi * frequency
-    b, a, _ = cont2discrete(([w * w], [1, 2 * damping * w, w * w]), interval, method="foh")
-    return lfilter(np.ravel(b), a, force)
+
+    def force(state):
+        depth, rate = state[0] - state[2], state[1] - state[3]
+        return max(k * max(depth, 0) ** 1.5 + c * max(depth, 0) ** 0.5 * rate, 0)
+
+    def slope(_, state):
+        own = force(state)
+        base = w * w * (compliance * own - state[2]) - 2 * damping * w * state[3]
+        return [state[1], -own / rig.MEFF - rig.OMEGA2 * state[0], state[3], base]
+
+    def apart(_, state):
+        return state[0] - state[2] + 1e-12
+
+    apart.terminal, apart.direction = True, -1
+    motion = solve_ivp(slope, (0, 0.05), [0, velocity, 0, 0], "DOP853", rtol=1e-9, atol=1e-14, dense_output=True, events=apart, first_step=1e-8)
+    end = motion.t[-1]
+    x, v = motion.y[:2, -1]
+    swing = np.sqrt(rig.OMEGA2)
+
+    def at(times):
+        inside = motion.sol(np.clip(times, 0, end))
+        free = np.where(times < 0, velocity / swing * np.sin(swing * times), x * np.cos(swing * (times - end)) + v / swing * np.sin(swing * (times - end)))
+        contact = (times >= 0) & (times <= end)
+        forces = np.array([force(state) if touches else 0.0 for state, touches in zip(inside.T, contact)])
+        return np.where(contact, inside[0], free), forces
+
+    return at, end
+
+
+def filtered(signal, interval, numerator, denominator):
+    b, a, _ = cont2discrete((numerator, denominator), interval, method="foh")
+    return lfilter(np.ravel(b), a, signal)
+
+
+def swung(signal, interval, frequency, damping):
+    """A sensor, filter or arm with two poles."""
+    w = 2 * np.pi * frequency
+    return filtered(signal, interval, [w * w], [1, 2 * damping * w, w * w])
 
 
 def recorded(motion, instrument, rng):
@@ -73,26 +162,32 @@ def recorded(motion, instrument, rng):
     count = int((fault_impacts.BEFORE + end + fault_impacts.AFTER) / interval)
     times = start + np.arange(count) * interval
     x, force = at(times)
-    if instrument.keys() & {"delay", "pole"}:
+    if instrument.keys() & {"delay", "pole", "filter", "arm"}:
         fine = times[0] - instrument.get("delay", 0.0) + np.arange(count * FINE) * interval / FINE
         _, force = at(fine)
+        if "arm" in instrument:
+            frequency, damping, compliance = instrument["arm"]
+            x = x - compliance * swung(force, interval / FINE, frequency, damping)[::FINE]
         if "pole" in instrument:
-            force = second_order(force, interval / FINE, *instrument["pole"])
+            force = swung(force, interval / FINE, *instrument["pole"])
+        if "filter" in instrument:
+            force = filtered(force, interval / FINE, [1], [1 / (2 * np.pi * instrument["filter"]), 1])
         force = force[::FINE]
     force = instrument.get("gain", 1.0) * force + fault_impacts.NOISE * rng.normal(size=count)
-    position = np.arcsin(x / fault_impacts.ARM) * fault_impacts.COUNTS / (2 * np.pi)
-    return force, position + rng.uniform(100, 104)
+    position = np.arcsin(x / fault_impacts.ARM) * fault_impacts.COUNTS / (2 * np.pi) + rng.uniform(100, 104)
+    return force, position + instrument.get("lines", 0.0) * np.sin(np.pi / 2 * position)
 
 
-def write(folder, told, instrument, motions, rng):
-    """Writes a campaign; gives what asks for an estimate in it."""
-    made = [fault_impacts.Record(*recorded(motion, instrument, rng), motion[0], motion[2]) for motion in motions]
+def write(folder, bench, motions, rng):
+    """Writes a campaign; gives what asks for the estimates in it."""
+    made = [fault_impacts.Record(*recorded(motion, bench.instrument, rng), motion[0], motion[2]) for motion in motions]
     records = [(f"i{index:03d}", record) for index, record in enumerate(made)]
-    inertia = fault_impacts.INERTIA * told.get("inertia", 1.0)
+    inertia = fault_impacts.INERTIA * bench.told.get("inertia", 1.0)
     fault_table.write_campaign(folder, records, "1 N", inertia)
     path = folder / "campaign.toml"
     plain = path.read_text()
-    return lambda quantity: path.write_text(plain.replace("[fit]\n", f'[fit]\nestimate = ["{quantity}"]\n'))
+    asked = ", ".join(f'"{name}"' for name in bench.estimate)
+    return lambda: path.write_text(plain.replace("[fit]\n", f"[fit]\nestimate = [{asked}]\n"))
 
 
 def compared(outcome, motions):
@@ -118,23 +213,31 @@ def campaign(program, seed, index, impacts, rigs):
     results = {}
     with tempfile.TemporaryDirectory() as scratch:
         for name in rigs:
-            told, instrument, quantity, truth, codes = RIGS[name]
+            bench = RIGS[name]
             folder = pathlib.Path(scratch) / name.replace(" ", "-").replace("%", "percent")
             made = motions
             if name in LAWS:
                 made = [(*drawn, *motion_of(other_hand(), name, *drawn)) for drawn in (own[:3] for own in motions)]
-            tell = write(folder, told, instrument, made, rng)
+            tell = write(folder, bench, made, rng)
             plain = fault_table.fitted(program, folder)
             own = {"plain": compared(plain, motions)}
-            said = {finding["code"] for finding in plain["findings"] if finding["code"].startswith(("bench", "law-"))}
-            own["named"] = bool(said & set(codes)) if codes else not said
-            if quantity:
-                tell(quantity)
+            said = [finding for finding in plain["findings"] if finding["code"].startswith(("bench", "law-"))]
+            named = [
+                finding
+                for finding in said
+                if finding["code"] in bench.codes and any(word in finding["message"] for word in bench.words)
+            ]
+            own["named"] = bool(named) if bench.codes else not said
+            own["said"] = [f"{finding['code']}: {finding['message']}" for finding in said]
+            if bench.estimate:
+                tell()
                 better = fault_table.fitted(program, folder)
                 own["better"] = compared(better, motions)
-                if truth is not None:
+                own["left"] = [finding["message"] for finding in better["findings"] if finding["code"].startswith(("bench", "law-"))]
+                own["z"] = {}
+                for quantity, truth in bench.truth.items():
                     estimate = better["estimated"][quantity]
-                    own["z"] = (estimate["value"] - truth) / estimate["sd"]
+                    own["z"][quantity] = (estimate["value"] - truth) / estimate["sd"]
             results[name] = own
     return results
 
@@ -154,8 +257,11 @@ def row(name, all_of):
     cells = [name, share([own["named"] for own in all_of])]
     cells += ["", ""] if name in LAWS else errors("plain")
     cells += errors("better") if "better" in all_of[0] else ["", ""]
-    z = [own["z"] for own in all_of if "z" in own]
-    cells.append(f"{np.mean(z):+.2f} ± {np.std(z):.2f}, {share(np.abs(z) < 1.96)}" if z else "")
+    told = []
+    for quantity in RIGS[name].truth:
+        z = [own["z"][quantity] for own in all_of]
+        told.append(f"{quantity} {np.mean(z):+.2f} ± {np.std(z):.2f}, {share(np.abs(z) < 1.96)}")
+    cells.append("; ".join(told))
     return "| " + " | ".join(cells) + " |"
 
 
@@ -167,6 +273,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rigs", default=",".join(RIGS))
+    parser.add_argument("--said", action="store_true", help="print what the first campaign says of each bench")
     asked = parser.parse_args()
     rigs = asked.rigs.split(",")
     with concurrent.futures.ProcessPoolExecutor(asked.jobs) as pool:
@@ -176,10 +283,13 @@ def main():
         ]
         results = [each.result() for each in made]
     print(f"{asked.campaigns} campaigns of {asked.impacts} impacts, seed {asked.seed}\n")
-    print("| bench | named | k off by | intervals that hold k, c | estimated: k off by | hold k, c | quantity: z, holds |")
+    print("| bench | named | k off by | intervals that hold k, c | estimated: k off by | hold k, c | quantities: z, holds |")
     print("|---|---|---|---|---|---|---|")
     for name in rigs:
         print(row(name, [result[name] for result in results]), flush=True)
+    if asked.said:
+        for name in rigs:
+            print(f"\n{name}", *results[0][name]["said"], *results[0][name].get("left", []), sep="\n  ")
 
 
 if __name__ == "__main__":

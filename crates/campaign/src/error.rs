@@ -62,6 +62,20 @@ pub enum CampaignError {
         /// Impacts that show it.
         told: usize,
     },
+    /// What the instruments do, which the impacts do not determine.
+    #[error(
+        "{path}: [fit] estimate: {quantity} cannot be determined: {fitted} of the impacts could \
+         be fitted, and at least 5 are needed whose residuals answer to it; take it out of \
+         `estimate`", path = path.display()
+    )]
+    ResponseUntold {
+        /// The campaign directory.
+        path: PathBuf,
+        /// The quantity.
+        quantity: &'static str,
+        /// Impacts that could be fitted.
+        fitted: usize,
+    },
     /// Impacts that contradict what is given with an uncertainty.
     #[error(
         "{path}: [fit] estimate: campaign.toml says {quantity} = {} ± {} {unit}, and the \

@@ -3,6 +3,7 @@
 //!
 //! This crate opens no file and reads no clock.
 
+pub mod bench;
 pub mod compare;
 pub mod compression_fit;
 mod compression_problem;

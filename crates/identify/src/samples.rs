@@ -146,6 +146,16 @@ impl SampleGroup {
         self
     }
 
+    /// Adds to each sample of each quantity what `change` says at its time.
+    pub(crate) fn shift(&mut self, change: impl Fn(Quantity, f64) -> f64) {
+        for quantity in Quantity::ALL {
+            let values = self.values[quantity as usize].iter_mut();
+            for (value, time) in values.zip(&self.times[..self.len]) {
+                *value += change(quantity, *time);
+            }
+        }
+    }
+
     /// Weight of sample `index` of a quantity in the cost.
     pub fn weight_of(&self, quantity: Quantity, index: usize) -> f64 {
         let relative = &self.relative[quantity as usize];

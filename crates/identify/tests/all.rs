@@ -4,6 +4,7 @@
 
 mod allocation;
 mod batch;
+mod bench;
 mod compression;
 mod intervals;
 mod known;

@@ -8,6 +8,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("design", ""),
     ("contact", "numerics"),
     ("signal", "statistics numerics"),
+    ("repeat", "signal statistics numerics"),
     ("identify", "contact signal statistics numerics"),
     ("drop-rig", "statistics identify signal contact numerics"),
     ("scene", "contact numerics"),
@@ -23,7 +24,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "measure",
-        "campaign draw files identify contact signal numerics",
+        "campaign draw files repeat identify contact signal numerics",
     ),
     ("inspect", "campaign draw files formats numerics statistics"),
     (
@@ -73,7 +74,7 @@ const TEST_DATA: &str = "test-data";
 
 /// Crates that compute: they print nothing, open no file, read no clock and
 /// know neither formats nor HTTP nor Python.
-const INNER: &str = "numerics statistics contact signal identify drop-rig design scene";
+const INNER: &str = "numerics statistics contact signal repeat identify drop-rig design scene";
 
 /// Crates that face people and programs: they parse, call a workflow, display.
 const FRONT_ENDS: &str = "web cli python";

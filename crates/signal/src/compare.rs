@@ -8,6 +8,7 @@ use crate::impact::Measured;
 use crate::measure::Surroundings;
 use crate::motion_check::check_motion;
 use crate::options::ExtractOptions;
+use crate::response::Response;
 use crate::track::{Signals, Track, mean_interval};
 use crate::uncertain::Uncertain;
 
@@ -71,8 +72,8 @@ pub(crate) fn compare(
         }
     }
     if whole && let (Some(force), Some(displacement)) = (&signals.force, &signals.displacement) {
-        let mass = options.effective_mass;
-        one_motion(force, displacement, place, mass, &mut measured, findings);
+        let known = (options.effective_mass, &options.response);
+        one_motion(force, displacement, place, known, &mut measured, findings);
     }
     let Some(acceleration) = &signals.acceleration else {
         return measured;
@@ -133,11 +134,12 @@ fn one_motion(
     force: &Track,
     displacement: &Track,
     place: &Surroundings,
-    mass: Option<f64>,
+    (mass, response): (Option<f64>, &Response),
     measured: &mut Measured,
     findings: &mut Vec<Finding>,
 ) {
-    let Some(found) = check_motion(force, displacement, place, mass.unwrap_or(1.0)) else {
+    let Some(found) = check_motion((force, displacement), place, mass.unwrap_or(1.0), response)
+    else {
         return;
     };
     let (delay, sd) = (found.delay.value, found.delay.sd);

@@ -171,7 +171,8 @@ pub enum Error {
 }
 
 impl Error {
-    pub(crate) fn bad_option(option: &'static str, value: f64, expected: &'static str) -> Self {
+    /// An option that has no usable value, with what was expected of it.
+    pub fn bad_option(option: &'static str, value: f64, expected: &'static str) -> Self {
         Self::BadOption {
             option,
             value,

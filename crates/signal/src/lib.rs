@@ -5,10 +5,7 @@
 //! ([`impact::Impact`], with [`finding::Finding`]s about what is poor);
 //! [`mass::mass_from_impulse`] finds the mass of a carriage;
 //! [`instrument::record`] goes the other way and writes what an instrument
-//! would have written of a motion. Impacts repeated on one spot are aligned
-//! ([`repeat::align`]), compared over fruit ([`repeat::permutation`],
-//! [`repeat::equivalence`]) or fruit by fruit ([`repeat::criterion`]), and give
-//! the critical impact energy ([`repeat::threshold`], [`repeat::turnbull`]).
+//! would have written of a motion.
 //!
 //! This crate opens no file and knows no force law.
 
@@ -46,7 +43,7 @@ mod oscillation;
 pub mod polynomial;
 mod rate;
 pub mod recording;
-pub mod repeat;
+pub mod response;
 pub mod restitution;
 pub mod ringing;
 pub mod spike;

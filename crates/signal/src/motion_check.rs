@@ -5,6 +5,7 @@ use crate::kinematics::value_at;
 use crate::linear_fit::{LinearFit, linear_fit, sum};
 use crate::measure::Surroundings;
 use crate::noise::colour::mean_inflation;
+use crate::response::Response;
 use crate::track::Track;
 use crate::uncertain::Uncertain;
 use std::ops::Range;
@@ -44,14 +45,15 @@ pub struct MotionCheck {
 ///
 /// * `force`, `displacement`: repulsive, and positive into the fruit; N, m
 /// * `mass`: what the contact accelerates; kg
+/// * `response`: what the instruments make of both; the bending of an arm counts as at rest
 ///
 /// `None` with fewer than twenty samples of either in contact, or where they do not
 /// determine the coefficients.
 pub(crate) fn check_motion(
-    force: &Track,
-    displacement: &Track,
+    (force, displacement): (&Track, &Track),
     place: &Surroundings,
     mass: f64,
+    response: &Response,
 ) -> Option<MotionCheck> {
     let side = SIDES * place.duration();
     let (from, until) = (
@@ -69,7 +71,7 @@ pub(crate) fn check_motion(
     let part = within(&displacement.times, from, until);
     let (times, places, noise) = exact(displacement, part);
     let (times, places) = (&times[..], &places[..]);
-    let [velocity_lost, way_lost] = integrals(force, from, mass);
+    let [velocity_lost, way_lost] = integrals(force, from, mass, response);
 
     let scale = until - from;
     let mut delay = 0.0;
@@ -122,8 +124,10 @@ fn exact(track: &Track, part: Range<usize>) -> (Vec<f64>, Vec<f64>, f64) {
 }
 
 /// Velocity and displacement that the force takes from a mass, from `from` on, at the
-/// times of the force; m/s, m.
-fn integrals(force: &Track, from: f64, mass: f64) -> [Vec<f64>; 2] {
+/// times of the force, as the instruments show it; m/s, m.
+fn integrals(force: &Track, from: f64, mass: f64, response: &Response) -> [Vec<f64>; 2] {
+    let (late, slow) = response.force_terms();
+    let bent = response.arm.map_or(0.0, |arm| arm.compliance);
     let (mut velocity, mut way) = (0.0, 0.0);
     let mut found = [Vec::new(), Vec::new()];
     for (i, (&time, &value)) in force.times.iter().zip(&force.values).enumerate() {
@@ -133,8 +137,10 @@ fn integrals(force: &Track, from: f64, mass: f64) -> [Vec<f64>; 2] {
             way += (velocity + 0.5 * gained) * interval;
             velocity += gained;
         }
-        found[0].push(velocity);
-        found[1].push(way);
+        // Of a recorded force F + late F' + slow F'' is the force; of a displacement behind a
+        // bent arm the arm's part is missing.
+        found[0].push(velocity + late * value / mass);
+        found[1].push(way + late * velocity + slow * value / mass + bent * value);
     }
     found
 }

@@ -5,6 +5,7 @@ use crate::encoder::edge_rate::CountTimes;
 use crate::encoder::quadrature::IllegalTransition;
 use crate::error::Error;
 use crate::kinematics::Encoder;
+use crate::response::Response;
 use crate::trigger::{Orientation, TriggerOptions};
 use serde::Serialize;
 
@@ -71,6 +72,8 @@ pub struct ExtractOptions {
     pub effective_mass: Option<f64>,
     /// Acceleration of the free impactor, positive into the fruit; m/s².
     pub driving_acceleration: f64,
+    /// What the instruments make of force and displacement.
+    pub response: Response,
 }
 
 impl Default for ExtractOptions {
@@ -93,6 +96,7 @@ impl Default for ExtractOptions {
             conditioning: Conditioning::default(),
             effective_mass: None,
             driving_acceleration: 0.0,
+            response: Response::default(),
         }
     }
 }

@@ -13,7 +13,6 @@ mod foam_pads;
 mod plate;
 mod quadrature_properties;
 mod rejects;
-mod repeats;
 mod restitution;
 mod ringing;
 mod scipy_filters;

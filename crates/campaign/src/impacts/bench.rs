@@ -3,9 +3,11 @@
 
 use crate::error::CampaignError;
 use crate::impacts::mass::{RigFound, rig_of};
+use crate::impacts::response::estimate_response;
 use crate::recording::extract::extract_recording;
 use crate::result::bench::pooled;
 use crate::result::counted::excluded;
+use crate::settings::bench::is_of_response;
 use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
 use rayon::prelude::*;
 use windfall_files::error::Error;
@@ -53,12 +55,14 @@ pub(crate) fn estimate_bench(campaign: &mut ImpactCampaign) -> Result<(), Error>
     if asked.is_empty() {
         return Ok(());
     }
+    let rig = rig_of(campaign)?.rig;
+    estimate_response(campaign, &rig, &asked)?;
     let entries = campaign.shared.entries.par_iter();
     let entries = entries.filter(|entry| excluded(entry).is_none());
-    let mass = Some(rig_of(campaign)?.rig.effective_mass());
+    let mass = Some(rig.effective_mass());
     let extracted = entries.filter_map(|entry| extract_recording(campaign, entry, mass).ok());
     let measured: Vec<Measured> = extracted.map(|(impact, _)| impact.measured).collect();
-    for quantity in asked {
+    for quantity in asked.into_iter().filter(|own| !is_of_response(*own)) {
         let (name, pooled_name) = match quantity {
             BenchQuantity::ForceDelay => ("delay", "force_delay"),
             _ => ("gain", "force_gain"),
@@ -182,7 +186,7 @@ fn apply(campaign: &mut ImpactCampaign, quantity: BenchQuantity, found: Uncertai
         quantity,
         value,
         sd,
-        told,
+        told: Some(told),
         impacts,
     });
 }

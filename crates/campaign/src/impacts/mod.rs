@@ -10,6 +10,7 @@ pub mod fit;
 pub mod groups;
 pub mod key;
 pub mod mass;
+mod response;
 pub mod run;
 pub mod text;
 pub mod two_stage;

@@ -5,6 +5,7 @@ use crate::impacts::card::card_of_fit;
 use crate::impacts::figure_impact::figure_of_impact;
 use crate::impacts::fit::Fits;
 use crate::impacts::mass::RigFound;
+use crate::impacts::response::name_cause;
 use crate::pipeline::evaluate::{Evaluated, evaluate};
 use crate::pipeline::request::{FitRequest, Reuse, apply_request};
 use crate::recording::digests::Digests;
@@ -284,7 +285,11 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let misfits = law_misfits(&impacts, !of_bench.is_empty());
     let estimated = estimated(campaign);
     let far = far_estimates(&estimated, &impacts);
-    findings.extend(of_bench.into_iter().chain(far).chain(misfits));
+    let cause = match of_bench.is_empty() {
+        true => None,
+        false => name_cause(campaign, &rig.rig, &impacts),
+    };
+    findings.extend(of_bench.into_iter().chain(far).chain(misfits).chain(cause));
     findings.extend(given_findings(&campaign.fit, &impacts));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));

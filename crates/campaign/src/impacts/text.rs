@@ -131,11 +131,14 @@ pub fn bench_lines(outcome: &CampaignOutcome) -> Vec<String> {
             "s" => (1e6, " µs".to_owned()),
             unit => (1.0, format!(" {unit}")),
         };
+        let told = own
+            .told
+            .map(|told| format!(" (campaign.toml: {})", plain(factor * told)));
         format!(
-            "Estimated from {} impacts: {name} = {}{unit} (campaign.toml: {})",
+            "Estimated from {} impacts: {name} = {}{unit}{}",
             own.impacts,
             value_and_sd(factor * own.value, Some(factor * own.sd)),
-            plain(factor * own.told)
+            told.unwrap_or_default()
         )
     });
     let shown = |name: &str, factor: f64| {

@@ -31,10 +31,7 @@ const CLEAR: f64 = 4.0;
 /// deviation the larger of what theirs and their scatter give. Nothing with fewer than five.
 pub fn pooled_bench(impacts: &[ImpactOutcome]) -> Named<PooledOutcome> {
     let law = impacts.first().map(|impact| &impact.law);
-    let asked = |impact: &&ImpactOutcome| {
-        let mut reasons = impact.left_out.iter();
-        Some(&impact.law) == law && reasons.all(|own| ASKED.contains(&own.code.as_str()))
-    };
+    let asked = |impact: &&ImpactOutcome| Some(&impact.law) == law && says_of_bench(impact);
     let own: Vec<&ImpactOutcome> = impacts.iter().filter(asked).collect();
     let pooled = ["force_gain", "force_delay"]
         .into_iter()
@@ -82,6 +79,12 @@ pub(crate) fn pooled(name: &str, values: Vec<(Uncertain, (f64, f64))>) -> Option
     let mean = averaged(inverted.collect())?;
     let (value, sd) = inverse(mean.value, mean.sd.hypot(GAIN_BY_BLUR * blur));
     Some(PooledOutcome { value, sd, ..mean })
+}
+
+/// Whether an impact counts, or would if its bench were as told.
+pub fn says_of_bench(impact: &ImpactOutcome) -> bool {
+    let mut reasons = impact.left_out.iter();
+    reasons.all(|own| ASKED.contains(&own.code.as_str()))
 }
 
 /// A weighted mean without those that are far from the others; `None` of fewer than five.
@@ -148,9 +151,12 @@ pub fn far_estimates(
     let far = estimated.0.iter().filter_map(|(name, own)| {
         let (scale, likelier) = match name == BenchQuantity::ForceDelay.name() {
             true => (duration, "rows that are missing, or a clock of its own"),
-            false => (own.told, "the arm, the counts per turn, a unit or a factor"),
+            false => (
+                own.told?,
+                "the arm, the counts per turn, a unit or a factor",
+            ),
         };
-        let away = (own.value - own.told).abs() / scale;
+        let away = (own.value - own.told?).abs() / scale;
         (away > FAR).then(|| {
             let told = format!(
                 "{name} is estimated {:.0} % away from what campaign.toml says{}: \

@@ -176,8 +176,8 @@ pub struct BenchOutcome {
     pub sd: f64,
     /// SI unit.
     pub unit: String,
-    /// What campaign.toml says; SI.
-    pub told: f64,
+    /// What campaign.toml says, where it says something; SI.
+    pub told: Option<f64>,
     /// Impacts that it comes from.
     pub impacts: usize,
 }

@@ -9,13 +9,29 @@ use windfall_signal::recording::Quantity;
 
 const KEY: (&str, &str) = ("[fit]", "estimate");
 
-/// Quantities that recordings can tell: one of the first three, and the last.
-pub const ESTIMABLE: [BenchQuantity; 4] = [
+/// Quantities that recordings determine: one of the first three, the delay, and one of the
+/// last three, with what belongs to it.
+pub const ESTIMABLE: [BenchQuantity; 7] = [
     BenchQuantity::Inertia,
     BenchQuantity::Mass,
     BenchQuantity::ForceGain,
     BenchQuantity::ForceDelay,
+    BenchQuantity::ForceFilter,
+    BenchQuantity::SensorFrequency,
+    BenchQuantity::ArmFrequency,
 ];
+
+/// Those that the residuals of the fits determine.
+const OF_RESPONSE: [BenchQuantity; 3] = [
+    BenchQuantity::ForceFilter,
+    BenchQuantity::SensorFrequency,
+    BenchQuantity::ArmFrequency,
+];
+
+/// Whether the residuals of the fits determine it, and not force and displacement alone.
+pub fn is_of_response(quantity: BenchQuantity) -> bool {
+    OF_RESPONSE.contains(&quantity)
+}
 
 /// Uncertainties of rig and force, and `[fit] estimate`.
 ///
@@ -96,7 +112,15 @@ fn untold(quantity: BenchQuantity, rig: &RigPlan, others: &[BenchQuantity]) -> O
         }
         _ => (),
     }
-    let of_gain = |own: &BenchQuantity| *own != BenchQuantity::ForceDelay;
+    if is_of_response(quantity) {
+        let mut others = others.iter();
+        let other = others.find(|own| is_of_response(**own) && **own != quantity)?;
+        return Some(format!(
+            "it is estimated beside {} already: estimate one of them, and give the other in [response]",
+            other.name()
+        ));
+    }
+    let of_gain = |own: &BenchQuantity| *own != BenchQuantity::ForceDelay && !is_of_response(*own);
     let other = others.iter().find(|own| of_gain(own) && **own != quantity);
     let other = other.filter(|_| of_gain(&quantity))?;
     Some(format!(

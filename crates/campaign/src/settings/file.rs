@@ -30,6 +30,9 @@ pub struct CampaignFile {
     pub channels: Option<Spanned<ChannelsFile>>,
     /// The encoder, where there is one.
     pub encoder: Option<Spanned<EncoderFile>>,
+    /// What the instruments make of force and displacement.
+    #[serde(default)]
+    pub response: ResponseFile,
     /// How contacts are found.
     #[serde(default)]
     pub contact: ContactFile,
@@ -203,6 +206,24 @@ pub struct EncoderFile {
     pub count_length: Option<Spanned<QuantityText>>,
     /// What the times beside decoded counts mean: "sampled" or "events".
     pub times: Option<Spanned<String>>,
+}
+
+/// `[response]`
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ResponseFile {
+    /// Corner of a filter of first order that the force passes.
+    pub force_filter: Option<Spanned<QuantityText>>,
+    /// Natural frequency of the force sensor.
+    pub sensor_frequency: Option<Spanned<QuantityText>>,
+    /// Its damping ratio.
+    pub sensor_damping: Option<Spanned<QuantityText>>,
+    /// Natural frequency of the arm's bending.
+    pub arm_frequency: Option<Spanned<QuantityText>>,
+    /// Its damping ratio.
+    pub arm_damping: Option<Spanned<QuantityText>>,
+    /// Bending of the arm by a force at rest.
+    pub arm_compliance: Option<Spanned<QuantityText>>,
 }
 
 /// `[contact]`

@@ -13,6 +13,7 @@ pub mod known;
 pub mod model;
 pub mod open_options;
 pub mod read;
+pub mod response;
 pub mod rig;
 pub mod shared;
 pub mod tables;

@@ -89,8 +89,8 @@ pub struct BenchFound {
     pub value: f64,
     /// Its standard uncertainty.
     pub sd: f64,
-    /// What campaign.toml says.
-    pub told: f64,
+    /// What campaign.toml says, where it says something.
+    pub told: Option<f64>,
     /// Impacts that it comes from.
     pub impacts: usize,
 }

@@ -8,6 +8,7 @@ use crate::settings::files::check_format;
 use crate::settings::fit::fit_plan;
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use crate::settings::model::{ChannelPlan, ImpactCampaign, RigPlan};
+use crate::settings::response::response_plan;
 use crate::settings::rig::rig_plan;
 use crate::settings::shared::read_shared;
 use std::path::Path;
@@ -33,11 +34,14 @@ pub fn read_campaign(directory: &Path) -> Result<ImpactCampaign, Error> {
 
     let (rig, sd) = rig_plan(&source, file.rig.as_ref())?;
     let channels = channel_plans(&source, file.channels.as_ref())?;
-    let contact = contact_plan(&source, &file, &rig)?;
+    let (response, sd) = response_plan(&source, &file.response, sd)?;
+    let mut contact = contact_plan(&source, &file, &rig)?;
+    contact.response = response;
     let bench = bench_plan(&source, &file, (&rig, sd), &channels)?;
     let user = user_laws(&source, &file.laws, directory)?;
     let noise_sd = noise_of_quantities(&rig, &channels);
-    let fit = fit_plan(&source, &file.fit, noise_sd, user)?;
+    let mut fit = fit_plan(&source, &file.fit, noise_sd, user)?;
+    fit.options.response = response;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Impacts;
     Ok(ImpactCampaign {

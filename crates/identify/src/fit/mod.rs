@@ -22,6 +22,7 @@ pub mod residual;
 mod residual_noise;
 mod residual_pack;
 mod residual_sums;
+pub(crate) mod response;
 pub mod result;
 mod search;
 pub(crate) mod solve;

@@ -4,6 +4,7 @@
 use crate::finding::Finding;
 use crate::fit::problem::{FitOptions, NoiseModel, Weighting};
 use crate::fit::residual::Rows;
+use crate::fit::response::Shift;
 use crate::fit::uncertainty::{inflation, standardised};
 use crate::noise::blocks::{block_length, mean_noise, means, samples_between};
 use crate::noise::edges::{EdgeSamples, edge_samples};
@@ -32,6 +33,8 @@ pub(crate) struct NoisePlan {
     pub persistence: [f64; QUANTITIES],
     /// Noise of a sample that the user gave, in place of what the recording shows; SI.
     pub given: [Option<f64>; QUANTITIES],
+    /// What the instruments add, where it has been taken off.
+    pub shift: Option<Shift>,
 }
 
 /// A quantity of an impact, if it was measured.
@@ -71,6 +74,7 @@ pub(crate) fn noise_plan(
         noise: [f64::NAN; QUANTITIES],
         persistence: [0.0; QUANTITIES],
         given: options.noise_sd,
+        shift: None,
     };
     for (quantity, series) in used.iter().filter(|_| modelled) {
         plan.persistence[*quantity as usize] = series.persistence.unwrap_or(0.0);
@@ -298,8 +302,11 @@ impl NoisePlan {
         let (ratio, rest) = mean_noise(persistence, length);
         let mut noise = self.noise;
         noise[quantity as usize] = noise_of(series, quantity, &self.given) * ratio.sqrt();
-        let group = block_group(impact, quantity, series, length, rest, &noise)
+        let mut group = block_group(impact, quantity, series, length, rest, &noise)
             .with_given_noise(quantity, self.given[quantity as usize].is_some());
+        if let Some(shift) = &self.shift {
+            group.shift(|quantity, time| -shift.at(quantity, time));
+        }
         Some(Coloured {
             group: (group, noise[quantity as usize], means(residuals, length)),
             persistence,

@@ -163,8 +163,12 @@ impl Plan<'_> {
     }
 
     /// Solves from the planned starts with the noise as it is planned.
-    pub(crate) fn solve_once(&self, rig: &Rig) -> Result<Solution, Error> {
-        self.solve_with_mass(rig.effective_mass(), &self.starts)
+    pub(crate) fn solve_once(&mut self, rig: &Rig) -> Result<Solution, Error> {
+        let first = self.solve_with_mass(rig.effective_mass(), &self.starts)?;
+        match self.options.response.is_none() {
+            true => Ok(first),
+            false => self.settle(first, rig),
+        }
     }
 
     /// The noise that the residuals of `first` show, where it is modelled.
@@ -260,7 +264,7 @@ impl Plan<'_> {
         }
     }
 
-    fn solve_from(
+    pub(crate) fn solve_from(
         &self,
         starts: &[Start],
         intervals: Option<IntervalPlan>,

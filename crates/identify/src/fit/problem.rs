@@ -9,6 +9,7 @@ use windfall_contact::expression::LawExpression;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_contact::parameter::{IMPACT_VELOCITY, MASS};
+use windfall_signal::response::Response;
 
 /// A law whose parameters are given, free, or both (a starting value).
 #[derive(Clone, Debug, PartialEq)]
@@ -195,6 +196,8 @@ pub struct FitOptions {
     pub intervals: IntervalOptions,
     /// What of the bench is uncertain; enters the deviations.
     pub bench: BenchSd,
+    /// What the instruments make of force and displacement.
+    pub response: Response,
 }
 
 impl Default for FitOptions {
@@ -215,6 +218,7 @@ impl Default for FitOptions {
             confidence: 0.95,
             intervals: IntervalOptions::default(),
             bench: BenchSd::default(),
+            response: Response::default(),
         }
     }
 }

@@ -80,7 +80,7 @@ pub fn fit_laws(
         .iter()
         .map(|problem| {
             rig.check()?;
-            let plan = plan(impact, rig, problem, options)?;
+            let mut plan = plan(impact, rig, problem, options)?;
             let solution = plan.solve_once(rig)?;
             Ok((plan, solution))
         })
@@ -157,7 +157,9 @@ fn widen(
     (quantity, sd): (BenchQuantity, f64),
     quantile: f64,
 ) {
-    let value = quantity.value(rig);
+    let mut response = options.response;
+    let of_response = quantity.of_response(&mut response).copied();
+    let value = of_response.unwrap_or_else(|| quantity.value(rig));
     // A quantity that is hardly known is varied by no more than half of itself.
     let step = if value > 0.0 { sd.min(0.5 * value) } else { sd };
     let mut near = problem.clone();
@@ -173,8 +175,18 @@ fn widen(
         ..*options
     };
     let refit = |step: f64| {
-        let (impact, rig) = bench.moved((impact, rig), quantity, step);
-        let fit = fit_impact(&impact, &rig, &near, &options).ok()?;
+        let mut options = options;
+        let fit = match quantity.of_response(&mut options.response) {
+            Some(own) => {
+                *own += step;
+                fit_impact(impact, rig, &near, &options)
+            }
+            None => {
+                let (impact, rig) = bench.moved((impact, rig), quantity, step);
+                fit_impact(&impact, &rig, &near, &options)
+            }
+        };
+        let fit = fit.ok()?;
         fit.converged.then_some(fit)
     };
     let (Some(low), Some(high)) = (refit(-step), refit(step)) else {

@@ -3,6 +3,10 @@
 use crate::rig::kind::Rig;
 use serde::Serialize;
 use windfall_signal::impact::Impact;
+use windfall_signal::response::Response;
+
+/// Number of quantities.
+const QUANTITIES: usize = 12;
 
 /// A quantity of the bench that may be uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -19,17 +23,35 @@ pub enum BenchQuantity {
     ForceGain,
     /// Time by which the force comes later than the displacement; s.
     ForceDelay,
+    /// Corner of a filter of first order that the force passes; Hz.
+    ForceFilter,
+    /// Natural frequency of the force sensor; Hz.
+    SensorFrequency,
+    /// Its damping ratio; 1.
+    SensorDamping,
+    /// Natural frequency of the arm's bending; Hz.
+    ArmFrequency,
+    /// Its damping ratio; 1.
+    ArmDamping,
+    /// Bending of the arm by a force; m/N.
+    ArmCompliance,
 }
 
 impl BenchQuantity {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; QUANTITIES] = [
         Self::Inertia,
         Self::Arm,
         Self::Mass,
         Self::CentreOfMass,
         Self::ForceGain,
         Self::ForceDelay,
+        Self::ForceFilter,
+        Self::SensorFrequency,
+        Self::SensorDamping,
+        Self::ArmFrequency,
+        Self::ArmDamping,
+        Self::ArmCompliance,
     ];
 
     /// Its name in campaign.toml and in results.
@@ -41,6 +63,12 @@ impl BenchQuantity {
             Self::CentreOfMass => "centre_of_mass",
             Self::ForceGain => "force.gain",
             Self::ForceDelay => "force.delay",
+            Self::ForceFilter => "force_filter",
+            Self::SensorFrequency => "sensor_frequency",
+            Self::SensorDamping => "sensor_damping",
+            Self::ArmFrequency => "arm_frequency",
+            Self::ArmDamping => "arm_damping",
+            Self::ArmCompliance => "arm_compliance",
         }
     }
 
@@ -50,8 +78,23 @@ impl BenchQuantity {
             Self::Inertia => "kg m^2",
             Self::Arm | Self::CentreOfMass => "m",
             Self::Mass => "kg",
-            Self::ForceGain => "1",
+            Self::ForceGain | Self::SensorDamping | Self::ArmDamping => "1",
             Self::ForceDelay => "s",
+            Self::ForceFilter | Self::SensorFrequency | Self::ArmFrequency => "Hz",
+            Self::ArmCompliance => "m/N",
+        }
+    }
+
+    /// Where it stands in what the instruments do; `None` of the others, and of what they do not.
+    pub fn of_response(self, response: &mut Response) -> Option<&mut f64> {
+        match self {
+            Self::ForceFilter => response.pole.as_mut(),
+            Self::SensorFrequency => response.sensor.as_mut().map(|own| &mut own.frequency),
+            Self::SensorDamping => response.sensor.as_mut().map(|own| &mut own.damping),
+            Self::ArmFrequency => response.arm.as_mut().map(|own| &mut own.swing.frequency),
+            Self::ArmDamping => response.arm.as_mut().map(|own| &mut own.swing.damping),
+            Self::ArmCompliance => response.arm.as_mut().map(|own| &mut own.compliance),
+            _ => None,
         }
     }
 
@@ -73,7 +116,7 @@ impl BenchQuantity {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BenchSd {
     /// In the order of [`BenchQuantity::ALL`].
-    sd: [f64; 6],
+    sd: [f64; QUANTITIES],
     /// Whether the displacement comes from turns of the arm, and is as long as the arm.
     pub turns: bool,
     /// The quantity that was estimated from force = mass × acceleration: where another one

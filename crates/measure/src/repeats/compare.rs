@@ -4,17 +4,13 @@ use crate::repeats::pairs::{Pair, Pairs, difference_of};
 use crate::repeats::read::{Margin, RepeatsCampaign};
 use itertools::Itertools;
 use windfall_files::found::FindingOutcome;
-use windfall_signal::repeat::align::CHANGES;
-use windfall_signal::repeat::criterion::{
-    Decision, Difference, Repeatability, decide, repeatability,
-};
-use windfall_signal::repeat::equivalence::{Equivalence, Verdict, equivalence};
-use windfall_signal::repeat::interval::{EnergyInterval, energy_interval};
-use windfall_signal::repeat::permutation::{
-    ComparedCurves, Differences, SignFlipTest, sign_flip_test,
-};
-use windfall_signal::repeat::threshold::{Threshold, fit_threshold};
-use windfall_signal::repeat::turnbull::{EnergyMass, turnbull};
+use windfall_repeat::align::CHANGES;
+use windfall_repeat::criterion::{Decision, Difference, Repeatability, decide, repeatability};
+use windfall_repeat::equivalence::{Equivalence, Verdict, equivalence};
+use windfall_repeat::interval::{EnergyInterval, energy_interval};
+use windfall_repeat::permutation::{ComparedCurves, Differences, SignFlipTest, sign_flip_test};
+use windfall_repeat::threshold::{Threshold, fit_threshold};
+use windfall_repeat::turnbull::{EnergyMass, turnbull};
 
 /// References fewer than this are reported.
 const FEW_REFERENCES: usize = 8;

@@ -11,9 +11,9 @@ use windfall_campaign::store::documents::StoredValue;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
+use windfall_repeat::align::features;
 use windfall_signal::impact::Series;
 use windfall_signal::recording::Recording;
-use windfall_signal::repeat::align::features;
 use windfall_signal::trigger::ContactChoice;
 use windfall_signal::{ExtractOptions, extract_impact};
 

@@ -2,7 +2,7 @@
 
 use crate::repeats::read::{Margin, RepeatsCampaign};
 use crate::words::{filters_text, percent, plain};
-use windfall_signal::repeat::align::Alignment;
+use windfall_repeat::align::Alignment;
 
 /// Impacts repeated on one spot.
 pub fn methods_of_repeats(campaign: &RepeatsCampaign) -> Vec<String> {

@@ -2,8 +2,8 @@
 
 use crate::repeats::evaluate::{RepeatImpact, series_of};
 use windfall_files::found::FailureOutcome;
-use windfall_signal::repeat::align::{AlignOptions, AlignedPair, align_pair};
-use windfall_signal::repeat::criterion::Difference;
+use windfall_repeat::align::{AlignOptions, AlignedPair, align_pair};
+use windfall_repeat::criterion::Difference;
 
 /// Energies this close are one level; 1.
 const SAME_ENERGY: f64 = 0.01;

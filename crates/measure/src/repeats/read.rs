@@ -18,10 +18,10 @@ use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, number_that, parse_source, positive_quantity, quantity_from_zero,
     read_source, refused,
 };
+use windfall_repeat::align::{AlignOptions, Alignment};
+use windfall_repeat::permutation::SignFlipOptions;
+use windfall_repeat::threshold::Family;
 use windfall_signal::conditioning::Conditioning;
-use windfall_signal::repeat::align::{AlignOptions, Alignment};
-use windfall_signal::repeat::permutation::SignFlipOptions;
-use windfall_signal::repeat::threshold::Family;
 
 /// A campaign of impacts repeated on one spot.
 #[derive(Clone, Debug)]

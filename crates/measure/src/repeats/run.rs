@@ -14,13 +14,13 @@ use windfall_draw::files::{NamedFigure, file_name};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
+use windfall_repeat::align::CHANGES;
+use windfall_repeat::criterion::Decision;
+use windfall_repeat::equivalence::Verdict;
+use windfall_repeat::interval::{EnergyInterval, energy_interval};
+use windfall_repeat::threshold::{ProfiledValue, Threshold};
+use windfall_repeat::turnbull::quantile_of;
 use windfall_signal::recording::Recording;
-use windfall_signal::repeat::align::CHANGES;
-use windfall_signal::repeat::criterion::Decision;
-use windfall_signal::repeat::equivalence::Verdict;
-use windfall_signal::repeat::interval::{EnergyInterval, energy_interval};
-use windfall_signal::repeat::threshold::{ProfiledValue, Threshold};
-use windfall_signal::repeat::turnbull::quantile_of;
 
 /// What the table of impacts shows.
 const SHOWN: [ShownValue; 4] = [

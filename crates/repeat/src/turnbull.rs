@@ -1,7 +1,7 @@
 //! Distribution of critical energies without a formula: Turnbull's estimate.
 
-use crate::error::Error;
-use crate::repeat::interval::EnergyInterval;
+use crate::interval::EnergyInterval;
+use windfall_signal::error::Error;
 
 /// Steps stop when no probability moves more than this; 1.
 const CONVERGED: f64 = 1e-13;
@@ -119,7 +119,7 @@ fn innermost(intervals: &[EnergyInterval]) -> Vec<EnergyMass> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::gaussian::{noise_source, uniform};
+    use windfall_signal::noise::gaussian::{noise_source, uniform};
 
     fn intervals(ends: &[(f64, f64)]) -> Vec<EnergyInterval> {
         ends.iter()

@@ -1,8 +1,8 @@
 //! Two impacts on one spot, laid over each other.
 
-use crate::error::Error;
-use crate::impact::Series;
-use crate::polynomial::fit_polynomial;
+use windfall_signal::error::Error;
+use windfall_signal::impact::Series;
+use windfall_signal::polynomial::fit_polynomial;
 
 /// A level is never below this many standard deviations of the noise; 1.
 const LEAST_LEVEL: f64 = 8.0;

@@ -1,6 +1,6 @@
 //! Whether a quantity stays the same within a margin: two one-sided tests.
 
-use crate::error::Error;
+use windfall_signal::error::Error;
 use windfall_statistics::distribution::tail::{t_upper, t_upper_quantile};
 
 /// What the data say about a change.

@@ -1,6 +1,6 @@
 //! Critical impact energy of one fruit: between two energies.
 
-use crate::repeat::equivalence::Verdict;
+use crate::equivalence::Verdict;
 
 /// Where the critical energy of a fruit lies: above `low` and not above `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Whether one fruit changed, by what repeats on an elastic reference scatter.
 
-use crate::error::Error;
-use crate::repeat::equivalence::{Verdict, check_level, t_quantile};
+use crate::equivalence::{Verdict, check_level, t_quantile};
+use windfall_signal::error::Error;
 
 /// Blocks into which a difference curve is averaged.
 const BLOCKS: usize = 14;
@@ -159,7 +159,7 @@ fn blocks(curve: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::gaussian::{NoiseSource, noise_source, normal};
+    use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal};
 
     fn noise(source: &mut NoiseSource, sd: f64) -> Difference {
         Difference {

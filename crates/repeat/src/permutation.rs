@@ -1,7 +1,7 @@
 //! Sign-flip test of whether curves change from one impact to the next, over all fruit.
 
-use crate::error::Error;
-use crate::noise::gaussian::{noise_source, uniform};
+use windfall_signal::error::Error;
+use windfall_signal::noise::gaussian::{noise_source, uniform};
 
 /// Ties are counted as reached within this relative difference; 1.
 const TIE: f64 = 1e-9;

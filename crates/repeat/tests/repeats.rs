@@ -1,13 +1,13 @@
 //! Claims on repeated impacts: the sign-flip test and the critical energy.
 //!
-//! Reference values: `tests/scipy/repeats.py` with SciPy 1.17.1.
+//! Reference values: `tests/repeats.py` with SciPy 1.17.1.
 
 #![allow(clippy::unwrap_used)]
 
+use windfall_repeat::interval::EnergyInterval;
+use windfall_repeat::permutation::{Differences, SignFlipOptions, sign_flip_test};
+use windfall_repeat::threshold::{Family, fit_threshold};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal};
-use windfall_signal::repeat::interval::EnergyInterval;
-use windfall_signal::repeat::permutation::{Differences, SignFlipOptions, sign_flip_test};
-use windfall_signal::repeat::threshold::{Family, fit_threshold};
 
 fn scalars(values: &[f64]) -> Differences {
     values.iter().map(|v| Some(vec![*v])).collect()

@@ -1,11 +1,11 @@
 //! Distribution of critical impact energies between fruit, from intervals.
 
-use crate::error::Error;
-use crate::repeat::equivalence::check_level;
-use crate::repeat::interval::EnergyInterval;
-pub use crate::repeat::threshold_family::Family;
-use crate::repeat::threshold_family::interval_terms;
-use crate::repeat::turnbull::check_intervals;
+use crate::equivalence::check_level;
+use crate::interval::EnergyInterval;
+pub use crate::threshold_family::Family;
+use crate::threshold_family::interval_terms;
+use crate::turnbull::check_intervals;
+use windfall_signal::error::Error;
 use windfall_statistics::distribution::tail::{chi_squared_upper_quantile, normal_quantile};
 
 /// Range of 1/σ that is searched, σ the spread of ln energy; 1.

@@ -1,0 +1,6 @@
+//! What of a bench explains what the fits of all its impacts leave: a gain, a delay, a filter, a
+//! sensor or an arm that swings.
+
+pub mod cause;
+pub mod residuals;
+mod search;
