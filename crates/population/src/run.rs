@@ -92,10 +92,11 @@ fn estimate(
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
     let mut campaign = campaign.clone();
+    let priors = campaign.fit.without_priors();
     let rig = find_rig(&mut campaign)?;
     let campaign = &campaign;
     let law = &campaign.fit.laws[0];
-    let problem = law_problem(law, &campaign.fit.free);
+    let problem = law_problem(law, &campaign.fit);
     let mut first = campaign.clone();
     first.fit.laws.truncate(1);
     let (impacts, mut failed) = impacts_and_left_out(&first, &rig, progress)?;
@@ -153,6 +154,7 @@ fn estimate(
     };
     add_bench(&mut fit, &impacts, &varying);
     let mut findings = findings(campaign, &rig, &fit, &specimens);
+    findings.extend(priors);
     let remarks = posterior.iter().flat_map(|posterior| posterior.findings());
     findings.extend(remarks.map(|finding| population_finding(&finding)));
     let method = "REML, Laplace";

@@ -36,7 +36,10 @@ fn residuals(
     let Some(law) = campaign.fit.laws.first() else {
         return Vec::new();
     };
-    let problem = law_problem(law, &campaign.fit.free);
+    // By the impacts alone: a prior of the law would count once in each of them.
+    let mut plan = campaign.fit.clone();
+    plan.without_priors();
+    let problem = law_problem(law, &plan);
     let options = FitOptions {
         bench: BenchSd::default(),
         intervals: IntervalOptions::default(),

@@ -93,13 +93,14 @@ fn rank(
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
     let mut campaign = campaign.clone();
+    let priors = campaign.fit.without_priors();
     let rig = find_rig(&mut campaign)?;
     let campaign = &campaign;
     let problems: Vec<LawProblem> = campaign
         .fit
         .laws
         .iter()
-        .map(|law| law_problem(law, &campaign.fit.free))
+        .map(|law| law_problem(law, &campaign.fit))
         .collect();
     let results = for_each(progress, campaign.shared.entries.len(), |item| {
         fits(campaign, &campaign.shared.entries[item], &rig, &problems)
@@ -122,6 +123,7 @@ fn rank(
         }
     }
     let mut findings = rig.findings.clone();
+    findings.extend(priors);
     set_levels(&mut impacts, &entries, &fitted, &mut findings);
     let compare = |impacts: &[LeveledImpact], fits: &[Vec<Option<Fit>>]| {
         rank_laws(impacts, fits, &rig.rig, &problems, &campaign.fit.options)
