@@ -48,8 +48,7 @@ fn residuals(
     let mass = Some(rig.effective_mass());
     let of = |entry: &&ImpactEntry| {
         let (impact, _) = extract_recording(campaign, entry, mass).ok()?;
-        let found = bench_residuals(&impact, rig, std::slice::from_ref(&problem), &options);
-        found.ok()?.pop().flatten()
+        bench_residuals(&impact, rig, &problem, &options).ok()
     };
     entries.par_iter().filter_map(of).collect()
 }

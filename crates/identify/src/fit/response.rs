@@ -78,16 +78,21 @@ impl Shift {
             Quantity::Displacement => &self.displacement,
             Quantity::Rate | Quantity::Acceleration => return 0.0,
         };
-        let place = (time - self.onset) / self.step;
-        if place <= 0.0 {
-            return 0.0;
-        }
-        let last = curve.len() - 1;
-        let at = (place as usize).min(last);
-        let next = (at + 1).min(last);
-        let part = (place - at as f64).min(1.0);
-        curve[at] + part * (curve[next] - curve[at])
+        value_at(curve, (time - self.onset) / self.step)
     }
+}
+
+/// The value of a curve at a place between its points: nothing before the first, and the last
+/// behind it.
+pub(crate) fn value_at(curve: &[f64], place: f64) -> f64 {
+    if place <= 0.0 {
+        return 0.0;
+    }
+    let last = curve.len() - 1;
+    let at = (place as usize).min(last);
+    let next = (at + 1).min(last);
+    let part = (place - at as f64).min(1.0);
+    curve[at] + part * (curve[next] - curve[at])
 }
 
 /// Shortest time between samples and the last time; s.

@@ -21,16 +21,11 @@ impl NoisePlan {
     /// The same samples with something else taken off them than before.
     ///
     /// * `onset`: of the times of the edges; s
-    fn shifted(self, shift: Shift, onset: f64) -> Self {
-        self.with_shift(Some(shift), onset)
-    }
-
-    /// [`shifted`](Self::shifted), or the samples as they were recorded.
-    pub(crate) fn with_shift(mut self, shift: Option<Shift>, onset: f64) -> Self {
+    fn shifted(mut self, shift: Shift, onset: f64) -> Self {
         let before = self.shift.take();
         let change = |quantity: Quantity, time: f64| {
             let off = before.as_ref().map_or(0.0, |own| own.at(quantity, time));
-            off - shift.as_ref().map_or(0.0, |own| own.at(quantity, time))
+            off - shift.at(quantity, time)
         };
         if let Some(edges) = &mut self.edges {
             for (value, time) in edges.values.iter_mut().zip(&edges.times) {
@@ -40,7 +35,7 @@ impl NoisePlan {
         for group in &mut self.groups {
             group.shift(change);
         }
-        self.shift = shift;
+        self.shift = Some(shift);
         self
     }
 }

@@ -134,7 +134,8 @@ pub(crate) fn whitened_zero(
     })
 }
 
-fn sandwich<const P: usize>(
+/// N⁻¹ M N⁻¹ of the first parameters.
+pub(crate) fn sandwich<const P: usize>(
     bread: &[[f64; P]; P],
     meat: &[[f64; P]; P],
     parameters: usize,
