@@ -218,6 +218,41 @@ fn rejects_what_the_bench_cannot_tell() {
             "[contact]\npre_trigger = \"2 ± 1 ms\"\n",
             "takes no ±",
         ),
+        (
+            "[contact]\n",
+            "[response]\nsensor_frequency = \"2 kHz\"\n[contact]\n",
+            "without sensor_damping",
+        ),
+        (
+            "[contact]\n",
+            "[response]\narm_compliance = \"0.1 um/N\"\n[contact]\n",
+            "without arm_frequency",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nsensor_frequency = \"2 kHz\"\nsensor_damping = \"1.5\"\n[contact]\n",
+            "must be between 0 and 1",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nforce_filter = \"0 Hz\"\n[contact]\n",
+            "must be above zero",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nforce_filter = \"5 ms\"\n[contact]\n",
+            "force_filter",
+        ),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"sensor_frequency\", \"arm_frequency\"]\n",
+            "beside sensor_frequency already",
+        ),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"sensor_damping\"]\n",
+            "expected one of inertia",
+        ),
     ] {
         let folder = campaign();
         tell(folder.path(), old, new);
