@@ -194,6 +194,33 @@ fn recovers_inertia_gain_and_delay_that_are_asked_for() {
 }
 
 #[test]
+fn rejects_instruments_that_cannot_have_made_the_recordings() {
+    let slow = "sensor_frequency = \"1 Hz\"\nsensor_damping = \"0.5\"\n";
+    let soft = "arm_frequency = \"1 kHz\"\narm_damping = \"0.1\"\narm_compliance = \"1 m/N\"\n";
+    for (lines, channel) in [(slow, "force"), (soft, "displacement")] {
+        let folder = campaign();
+        let told = format!("[response]\n{lines}[contact]\n");
+        tell(folder.path(), "[contact]\n", &told);
+        let (status, out, told) = windfall("fit campaign", folder.path());
+        assert_eq!(status, Some(1), "{told}");
+        let said = format!("the {channel} would be recorded");
+        assert!(out.contains(&said), "{out}");
+    }
+}
+
+#[test]
+fn rejects_an_estimate_of_instruments_that_do_nothing() {
+    for quantity in ["sensor_frequency", "arm_frequency", "force_filter"] {
+        let folder = campaign();
+        let told = format!("[fit]\nestimate = [\"{quantity}\"]\n");
+        tell(folder.path(), "[fit]\n", &told);
+        let (status, _, told) = windfall("fit campaign", folder.path());
+        assert_eq!(status, Some(2), "{told}");
+        assert!(told.contains("16 impacts leave does not show it"), "{told}");
+    }
+}
+
+#[test]
 fn rejects_what_the_bench_cannot_tell() {
     for (old, new, said) in [
         ("kg m^2\"", "kg m^2 ± 0.0002\"", "has no unit"),

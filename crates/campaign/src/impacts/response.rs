@@ -58,7 +58,7 @@ fn residuals(
 /// says.
 ///
 /// # Errors
-/// Fewer than five impacts can be fitted.
+/// Fewer than five impacts can be fitted, or their residuals do not show it.
 pub(crate) fn estimate_response(
     campaign: &mut ImpactCampaign,
     rig: &Rig,
@@ -78,13 +78,24 @@ pub(crate) fn estimate_response(
     };
     let told = campaign.fit.options.response;
     let mut found: Option<CauseFound> = None;
-    for _ in 0..ROUNDS {
+    let without = Cause {
+        pole: false,
+        sensor: false,
+        arm: false,
+        ..cause
+    };
+    for round in 0..ROUNDS {
         let entries = campaign.shared.entries.iter();
         let entries: Vec<&ImpactEntry> = entries.filter(|own| excluded(own).is_none()).collect();
         let residuals = residuals(campaign, rig, &entries);
         let fitted = residuals.len();
-        found = likeliest_causes(&residuals, &[cause]).pop();
-        let Some(found) = &found else {
+        let both = likeliest_causes(&residuals, &[cause, without]);
+        let of = |cause: Cause| both.iter().find(|own| own.cause == cause);
+        // In the second round it is taken off already.
+        let shown = of(cause)
+            .zip(of(without))
+            .filter(|(with, without)| round > 0 || without.aic - with.aic >= BETTER);
+        let Some((own, _)) = shown else {
             return Err(Error::from(CampaignError::ResponseUntold {
                 path: campaign.shared.directory.clone(),
                 quantity: quantity.name(),
@@ -93,16 +104,17 @@ pub(crate) fn estimate_response(
         };
         let mut response = told;
         if cause.pole {
-            response.pole = found.fault.response.pole;
+            response.pole = own.fault.response.pole;
         }
         if cause.sensor {
-            response.sensor = found.fault.response.sensor;
+            response.sensor = own.fault.response.sensor;
         }
         if cause.arm {
-            response.arm = found.fault.response.arm;
+            response.arm = own.fault.response.arm;
         }
         campaign.fit.options.response = response;
         campaign.contact.response = response;
+        found = Some(*own);
     }
     if let Some(found) = found {
         keep(campaign, quantity, &found);

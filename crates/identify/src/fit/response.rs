@@ -2,11 +2,14 @@
 
 use crate::error::Error;
 use crate::rig::kind::Rig;
-use crate::rig::simulate::trajectory;
+use crate::rig::simulate::{simulate_rig, trajectory};
 use crate::samples::{Quantity, SampleGroup};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::Law;
 use windfall_signal::response::Response;
+
+/// Largest error of an instrument that measures the contact, as a part of what it measures; 1.
+const MOST: f64 = 0.5;
 
 /// What the instruments add to force and displacement, from first touch on.
 #[derive(Clone, Debug)]
@@ -51,6 +54,8 @@ impl Motion<'_> {
 }
 
 impl Shift {
+    /// # Errors
+    /// [`Error::ResponseTooLarge`]; the motion cannot be simulated.
     pub(crate) fn of(
         response: &Response,
         motion: &Motion,
@@ -58,7 +63,19 @@ impl Shift {
     ) -> Result<Self, Error> {
         let (interval, until) = clock(groups);
         let (step, force) = motion.force(response, interval, until)?;
-        Ok(Self::of_force(response, motion.onset, step, &force))
+        let own = Self::of_force(response, motion.onset, step, &force);
+        let largest = |curve: &[f64]| curve.iter().fold(0.0, |most, own| own.abs().max(most));
+        let law = motion.law;
+        let deepest = simulate_rig(law, motion.rig, motion.velocity, motion.end)?.max_displacement;
+        for (channel, part) in [
+            ("force", largest(&own.force) / largest(&force)),
+            ("displacement", largest(&own.displacement) / deepest),
+        ] {
+            if part.is_nan() || part > MOST {
+                return Err(Error::ResponseTooLarge { channel, part });
+            }
+        }
+        Ok(own)
     }
 
     /// What instruments add to a force.

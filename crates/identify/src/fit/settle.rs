@@ -43,6 +43,9 @@ impl NoisePlan {
 impl Plan<'_> {
     /// Solves with what the instruments make of the solution taken off the samples, from a
     /// solution on.
+    ///
+    /// # Errors
+    /// [`Error::ResponseTooLarge`], [`Error::ResponseUnsettled`]; a fit fails.
     pub(crate) fn settle(&mut self, first: Solution, rig: &Rig) -> Result<Solution, Error> {
         let mut solution = first;
         for _ in 0..MOST_FITS {
@@ -72,9 +75,9 @@ impl Plan<'_> {
             solution = next;
             solution.evaluations += evaluations;
             if settled {
-                break;
+                return Ok(solution);
             }
         }
-        Ok(solution)
+        Err(Error::ResponseUnsettled { fits: MOST_FITS })
     }
 }
