@@ -7,6 +7,7 @@ mod batch;
 mod bench;
 mod compression;
 mod intervals;
+mod known;
 mod laws;
 mod memory_law;
 mod population;

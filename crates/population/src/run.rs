@@ -83,6 +83,7 @@ pub fn population(
         campaign.covariates.clone_from(&request.covariates);
     }
     on_threads(request.fit.threads, || {
+        let priors = campaign.fit.without_priors();
         let rig = find_rig(&mut campaign)?;
         let question = Question {
             campaign: &campaign,
@@ -93,6 +94,7 @@ pub fn population(
         let work = || estimate(&campaign, &rig, request.posterior, progress);
         let (mut outcome, told) = answer(&question, request.fit.reuse, work)?;
         outcome.findings.extend(told);
+        outcome.findings.extend(priors);
         Ok(outcome)
     })
 }
@@ -104,7 +106,7 @@ fn estimate(
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
     let law = &campaign.fit.laws[0];
-    let problem = law_problem(law, &campaign.fit.free);
+    let problem = law_problem(law, &campaign.fit);
     let mut first = campaign.clone();
     first.fit.laws.truncate(1);
     let (impacts, mut failed) = impacts_and_left_out(&first, rig, progress)?;

@@ -120,7 +120,7 @@ fn results(outcome: &CampaignOutcome) -> Section {
                 .chain(
                     laws_of(outcome)
                         .first()
-                        .and_then(|law| common_line(&groups_of(outcome, law))),
+                        .and_then(|law| common_line(outcome, &groups_of(outcome, law))),
                 )
                 .map(|line| format!("{line}."))
                 .collect(),

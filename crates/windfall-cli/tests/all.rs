@@ -21,6 +21,7 @@ mod http;
 mod identification;
 mod inputs;
 mod kinds;
+mod known;
 mod library;
 mod messages;
 mod outputs;

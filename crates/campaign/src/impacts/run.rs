@@ -14,6 +14,7 @@ use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
 use crate::result::bench::{bench_findings, far_estimates, pooled_bench};
 use crate::result::counted::mark_left_out;
+use crate::result::given::given_findings;
 use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::stacked::law_misfits;
 use crate::result::summary::{summarise, summarise_groups};
@@ -297,6 +298,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     };
     findings.extend(of_bench.into_iter().chain(far).chain(misfits).chain(cause));
     findings.extend(of_trends.into_iter().chain(times.unread));
+    findings.extend(given_findings(&campaign.fit, &impacts));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));
     CampaignOutcome {

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod counted;
 pub mod fit_outcome;
+pub mod given;
 pub mod interval_outcome;
 pub mod outcome;
 pub mod quantity;

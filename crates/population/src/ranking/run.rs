@@ -91,6 +91,7 @@ fn rank(
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
     let mut campaign = campaign.clone();
+    let priors = campaign.fit.without_priors();
     let rig = find_rig(&mut campaign)?;
     let question = Question {
         campaign: &campaign,
@@ -106,6 +107,7 @@ fn rank(
     let work = || compared(&campaign, &rig, figures, progress);
     let (mut outcome, told) = answer(&question, reuse, work)?;
     outcome.findings.extend(told);
+    outcome.findings.extend(priors);
     Ok(outcome)
 }
 
@@ -119,7 +121,7 @@ fn compared(
         .fit
         .laws
         .iter()
-        .map(|law| law_problem(law, &campaign.fit.free))
+        .map(|law| law_problem(law, &campaign.fit))
         .collect();
     let results = for_each(progress, campaign.shared.entries.len(), |item| {
         fits(campaign, &campaign.shared.entries[item], rig, &problems)

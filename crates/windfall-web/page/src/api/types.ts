@@ -8,7 +8,9 @@ export interface AlongOutcome { quantity: string; known: MeasuredValue; value: n
 export interface AnovaOutcome { term: string; ss: number | null; df: number; f: number; p: number; }
 export type AnyOutcome = CampaignOutcome | MeasuredOutcome;
 export type AnyRegressOutcome = RegressOutcome | MixedOutcome;
-export interface BenchOutcome { value: number; sd: number; unit: string; told: number; impacts: number; }
+export interface BenchOutcome {
+  value: number; sd: number; unit: string; told: number | null; impacts: number;
+}
 export interface Bounds { low: [number, number, number]; high: [number, number, number]; }
 export interface BoxCoxOutcome { lambda: number; low: number | null; high: number | null; }
 export interface BruiseOutcome { limits: LimitOutcome[]; mean_largest: number; places: PlaceOutcome[]; }
