@@ -31,7 +31,8 @@ pub fn figure_of_trends(
         caption: "What should be constant, over the impact velocity and over order and time of \
                   day, one point per impact. Lines: slope over the campaign (within fruit where \
                   each was struck at several velocities), and this slope ± two standard deviations, through \
-                  the medians."
+                  the medians. Over order and time of day it is the slope at one velocity, while the \
+                  points are drawn as measured: they may scatter more than the lines allow."
             .to_owned(),
         figure: Figure::new(format!("{law}: what should be constant"), panels),
     })
