@@ -64,9 +64,9 @@ pub enum CampaignError {
     },
     /// What the instruments do, which the impacts do not determine.
     #[error(
-        "{path}: [fit] estimate: {quantity} cannot be determined: {fitted} of the impacts could \
-         be fitted, and at least 5 are needed whose residuals answer to it; take it out of \
-         `estimate`", path = path.display()
+        "{path}: [fit] estimate: {quantity} cannot be determined: what the fits of {fitted} impacts \
+         leave does not show it (at least 5 are needed, and a difference of AICc of 10); take it \
+         out of `estimate`", path = path.display()
     )]
     ResponseUntold {
         /// The campaign directory.

@@ -102,6 +102,9 @@ pub struct CardCovariate {
 pub struct CardDefinition {
     /// Formula of the force in x (m) and v (m/s); N.
     pub force: Option<String>,
+    /// Formula below the largest displacement so far, where the law has memory; N.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unloading: Option<String>,
     /// Displacements of a table; m.
     #[serde(rename = "displacement_m")]
     pub displacement: Option<Vec<f64>>,

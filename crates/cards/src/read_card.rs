@@ -4,6 +4,7 @@ use crate::law_card::{CARD_FORMAT, CardDefinedParameter, CardDefinition, LawCard
 use serde::Deserialize;
 use std::path::Path;
 use windfall_contact::expression::{LawExpression, parse_law_among};
+use windfall_contact::formula::error::FormulaError;
 use windfall_contact::laws::define_law::define_law;
 use windfall_contact::laws::force_table::ForceTable;
 use windfall_contact::laws::kind::{Law, LawKind};
@@ -203,10 +204,19 @@ pub fn law_of_card(card: &LawCard, path: &Path) -> Result<Law, Error> {
 fn law_at(card: &LawCard, source: &TomlSource) -> Result<Law, Error> {
     use windfall_contact::error::Error as LawError;
     let kind = match &card.definition {
+        Some(own) if own.force.is_none() && own.unloading.is_some() => {
+            let problem = "unloading belongs to a formula `force`; a table has no memory";
+            return Err(invalid_at(source, &["definition", "unloading"], problem));
+        }
         Some(definition) => define_law(&defined(&card.law, definition)).map_err(|error| {
-            let key = match definition.force {
-                Some(_) => "force",
-                None => "displacement_m",
+            let key = match (&error, &definition.force) {
+                (LawError::UserLaw { problem, .. }, _)
+                    if matches!(**problem, FormulaError::Unloading(_)) =>
+                {
+                    "unloading"
+                }
+                (_, Some(_)) => "force",
+                (_, None) => "displacement_m",
             };
             invalid_at(source, &["definition", key], error.to_string())
         })?,
@@ -238,9 +248,13 @@ fn wrong(path: &Path, problem: String) -> Error {
 }
 
 fn defined(name: &str, card: &CardDefinition) -> UserLawDefinition {
-    let force = match &card.force {
-        Some(formula) => UserForce::Formula(formula.clone()),
-        None => UserForce::Table(ForceTable {
+    let force = match (&card.force, &card.unloading) {
+        (Some(formula), None) => UserForce::Formula(formula.clone()),
+        (Some(formula), Some(unloading)) => UserForce::WithMemory {
+            force: formula.clone(),
+            unloading: unloading.clone(),
+        },
+        (None, _) => UserForce::Table(ForceTable {
             displacement: card.displacement.clone().unwrap_or_default(),
             force: card.table_force.clone().unwrap_or_default(),
             damping: card.damping.clone(),
@@ -279,6 +293,7 @@ pub fn card_definition(kind: LawKind) -> Option<CardDefinition> {
     });
     let mut card = CardDefinition {
         force: None,
+        unloading: None,
         displacement: None,
         table_force: None,
         damping: None,
@@ -286,6 +301,10 @@ pub fn card_definition(kind: LawKind) -> Option<CardDefinition> {
     };
     match &definition.force {
         UserForce::Formula(formula) => card.force = Some(formula.clone()),
+        UserForce::WithMemory { force, unloading } => {
+            card.force = Some(force.clone());
+            card.unloading = Some(unloading.clone());
+        }
         UserForce::Table(table) => {
             card.displacement = Some(table.displacement.clone());
             card.table_force = Some(table.force.clone());

@@ -5,4 +5,5 @@
 mod expression;
 mod law_derivatives;
 mod law_values;
+mod memory_law;
 mod user_law;

@@ -12,7 +12,7 @@ use windfall_contact::with_law;
 use windfall_numerics::real::Lanes;
 
 /// `name unit start [default]`
-fn parameter(text: &str) -> UserParameter {
+pub(crate) fn parameter(text: &str) -> UserParameter {
     let mut words = text.split('|').map(str::trim);
     let mut word = || words.next().unwrap_or_default();
     let (name, unit, start, default) = (word(), word(), word(), word());

@@ -77,6 +77,7 @@ fn seeds(path: &str, samples: usize) -> Vec<SampleGroup> {
 
 fn parameter(target: Target, coordinate: Coordinate, lower: f64, upper: f64) -> FreeParameter {
     FreeParameter {
+        prior: None,
         target,
         coordinate,
         lower,

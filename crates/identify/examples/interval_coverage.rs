@@ -20,7 +20,7 @@ use pendulum::{Bench, arguments, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::LawKind;
 use windfall_identify::fit::interval::{IntervalDetail, IntervalMethod, IntervalOptions};
-use windfall_identify::fit::problem::{FitOptions, LawProblem, NoiseModel, Prior};
+use windfall_identify::fit::problem::{FitOptions, Known, LawProblem, NoiseModel, Prior};
 use windfall_identify::fit::result::{Fit, fit_impact};
 use windfall_signal::impact::Impact;
 use windfall_signal::noise::gaussian::{noise_source, normal, uniform};
@@ -80,14 +80,20 @@ fn made(bench: &Bench, seed: u64) -> Option<Made> {
 fn fit(made: &Made, method: IntervalMethod, noise: NoiseModel, seed: u64) -> Option<Fit> {
     let mut problem = LawProblem::from_expression(&parse_law("kuwabara-kono").unwrap());
     if method == IntervalMethod::Posterior {
-        problem.priors = [0, 1]
-            .map(|i| {
-                Some(Prior {
-                    centre: MEDIAN[i],
-                    spread: SPREAD[i],
-                })
-            })
-            .to_vec();
+        // Normal, with the moments of the log-normal distribution that the truth is drawn from.
+        let known = [0, 1].map(|i| {
+            let square = SPREAD[i] * SPREAD[i];
+            let mean = MEDIAN[i] * (0.5 * square).exp();
+            Known {
+                name: ["k", "c"][i].to_owned(),
+                prior: Some(Prior {
+                    mean,
+                    sd: mean * square.exp_m1().sqrt(),
+                }),
+                range: (f64::NEG_INFINITY, f64::INFINITY),
+            }
+        });
+        problem.known = known.to_vec();
     }
     let options = FitOptions {
         noise,

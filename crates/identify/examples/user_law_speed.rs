@@ -102,6 +102,7 @@ fn fit<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
         sampling: Sampling::Instantaneous,
     };
     let free = [0, 1].map(|i| FreeParameter {
+        prior: None,
         target: Target::Law(i),
         coordinate: Coordinate::Logarithm,
         lower: 1e-3,

@@ -139,6 +139,25 @@ pub enum Error {
         "the velocity at first touch is to be held, but the recording does not show the motion before contact; give the velocity, or let it be estimated"
     )]
     UnknownVelocity,
+    /// Instruments that would change what they measure beyond recognition.
+    #[error(
+        "the {channel} would be recorded {:.0} % off by what [response] says of filter, sensor or arm: such instruments cannot have made this recording, or not measure the contact; check the frequencies and the compliance",
+        100.0 * part
+    )]
+    ResponseTooLarge {
+        /// The channel.
+        channel: &'static str,
+        /// Largest error, as a part of the largest value; 1.
+        part: f64,
+    },
+    /// Repeated fits that do not come to rest.
+    #[error(
+        "with what [response] says of filter, sensor or arm {fits} fits in a row did not come to rest; check the frequencies and the compliance"
+    )]
+    ResponseUnsettled {
+        /// How many.
+        fits: usize,
+    },
     /// No starting point lets the model be evaluated.
     #[error(
         "no starting point for {law} gives an impact that can be integrated; give starting values in the law expression"

@@ -13,8 +13,9 @@ pub enum Finding {
     },
     /// A parameter ended on its bound.
     #[error(
-        "{parameter} ended on its {side} bound {}: the data call for a value beyond it, or do not determine it",
-        Shown(*bound, unit)
+        "{parameter} ended on its {side} bound {}{}: the data call for a value beyond it, or do not determine it",
+        Shown(*bound, unit),
+        if *given { ", which was given" } else { "" }
     )]
     AtBound {
         /// Name of the parameter.
@@ -25,6 +26,43 @@ pub enum Finding {
         bound: f64,
         /// Its unit.
         unit: String,
+        /// Whether the user gave it.
+        given: bool,
+    },
+    /// Data and prior contradict each other.
+    #[error(
+        "the prior of {parameter}, {} ± {}, and the data, which alone say {} ± {}, are {apart:.1} of their deviations apart{}",
+        Shown(prior.0, unit), Shown(prior.1, unit), Shown(data.0, unit), Shown(data.1, unit),
+        if *pulled {
+            ": the estimate lies between two values of which one is wrong"
+        } else {
+            ": the data outweigh it"
+        }
+    )]
+    PriorContradicted {
+        /// Name of the parameter.
+        parameter: String,
+        /// Its unit.
+        unit: String,
+        /// Mean and standard deviation of the prior; SI.
+        prior: (f64, f64),
+        /// What the data say without it, with its standard deviation; SI.
+        data: (f64, f64),
+        /// Their difference, in its deviations; 1.
+        apart: f64,
+        /// Whether the prior moves the estimate noticeably.
+        pulled: bool,
+    },
+    /// A prior says more than the data.
+    #[error(
+        "{:.0} % of what is known of {parameter} is its prior: the impact hardly tells it",
+        100.0 * share
+    )]
+    MostlyPrior {
+        /// Name of the parameter.
+        parameter: String,
+        /// Variance of the estimate over that of the prior; 1.
+        share: f64,
     },
     /// A nuisance was left out of the free parameters.
     #[error("{quantity} was held at {}: {reason}", Shown(*value, unit))]
@@ -206,6 +244,9 @@ impl Finding {
         match self {
             Self::NoConvergence { .. } => "no-convergence",
             Self::AtBound { .. } => "at-bound",
+            Self::PriorContradicted { pulled: true, .. } => "prior-contradicted",
+            Self::PriorContradicted { .. } => "prior-outweighed",
+            Self::MostlyPrior { .. } => "mostly-prior",
             Self::Held { .. } => "held",
             Self::Freed { .. } => "freed",
             Self::Correlated { .. } => "correlated",
@@ -269,6 +310,7 @@ mod tests {
             side: "upper",
             bound: 6.0,
             unit: "1".to_owned(),
+            given: false,
         };
         assert_eq!(
             at_bound.to_string(),

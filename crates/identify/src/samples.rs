@@ -27,6 +27,16 @@ impl Quantity {
         Self::Acceleration,
     ];
 
+    /// SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Displacement => "m",
+            Self::Rate => "m/s",
+            Self::Force => "N",
+            Self::Acceleration => "m/s^2",
+        }
+    }
+
     /// Name in campaign files and results.
     pub fn name(self) -> &'static str {
         match self {
@@ -58,6 +68,8 @@ pub struct SampleGroup {
     pub(crate) zero_sd: [f64; QUANTITIES],
     /// Whether samples are means over the interval between them.
     pub(crate) means: bool,
+    /// Whether the user gave the noise of each quantity: residuals do not change it.
+    pub(crate) given: [bool; QUANTITIES],
 }
 
 impl SampleGroup {
@@ -79,6 +91,7 @@ impl SampleGroup {
             persistence: [0.0; QUANTITIES],
             zero_sd: [0.0; QUANTITIES],
             means: false,
+            given: [false; QUANTITIES],
         }
     }
 
@@ -107,6 +120,13 @@ impl SampleGroup {
     #[must_use]
     pub fn with_zero_sd(mut self, quantity: Quantity, sd: f64) -> Self {
         self.zero_sd[quantity as usize] = sd;
+        self
+    }
+
+    /// The same samples, those of `quantity` with noise that is known and not estimated.
+    #[must_use]
+    pub fn with_given_noise(mut self, quantity: Quantity, given: bool) -> Self {
+        self.given[quantity as usize] = given;
         self
     }
 

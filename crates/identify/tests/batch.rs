@@ -41,6 +41,7 @@ fn carriage() -> Motion {
 
 fn parameter(target: Target, coordinate: Coordinate, lower: f64, upper: f64) -> FreeParameter {
     FreeParameter {
+        prior: None,
         target,
         coordinate,
         lower,

@@ -74,10 +74,7 @@ fn problem() -> LawProblem {
 }
 
 fn residuals(impacts: &[Impact], options: &FitOptions) -> Vec<BenchResiduals> {
-    let of = |impact: &Impact| {
-        let mut own = bench_residuals(impact, &rig(), &[problem()], options).unwrap();
-        own.pop().unwrap().unwrap()
-    };
+    let of = |impact: &Impact| bench_residuals(impact, &rig(), &problem(), options).unwrap();
     impacts.iter().map(of).collect()
 }
 

@@ -216,7 +216,7 @@ fn closed_form_uncertain_force() {
     let by_mass = fit(&both, BenchQuantity::Mass, 0.002);
     let by_gain = fit(&both, BenchQuantity::ForceGain, 0.01);
     let (mass, gain) = (&by_mass.common[0], &by_gain.common[0]);
-    assert_eq!((mass.quantity.name(), mass.sd), ("mass", 0.002));
+    assert_eq!((mass.cause.name().as_str(), mass.sd), ("mass", 0.002));
     for (i, own) in by_mass.parameters.iter().enumerate() {
         let sum = (mass.shifts[i] - gain.shifts[i]) / own.value;
         assert!((sum - 0.01).abs() < 2e-4, "{}: {sum}", own.name);

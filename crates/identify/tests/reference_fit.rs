@@ -55,6 +55,7 @@ fn samples(rows: &[Vec<f64>]) -> SampleGroup {
 
 fn parameter(target: Target, coordinate: Coordinate, lower: f64, upper: f64) -> FreeParameter {
     FreeParameter {
+        prior: None,
         target,
         coordinate,
         lower,

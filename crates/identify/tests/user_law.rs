@@ -18,7 +18,7 @@ use windfall_identify::rig::kind::{Carriage, Rig};
 use windfall_identify::rig::simulate::simulate_rig;
 
 /// `name|unit|start|default`
-fn parameter(text: &str) -> UserParameter {
+pub(crate) fn parameter(text: &str) -> UserParameter {
     let words: Vec<&str> = text.split('|').collect();
     UserParameter {
         name: words[0].into(),

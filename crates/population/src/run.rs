@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use windfall_campaign::impacts::answer::{Question, answer};
 use windfall_campaign::impacts::bench::find_rig;
 use windfall_campaign::impacts::card::add_outer;
 use windfall_campaign::impacts::fit::{impacts_and_left_out, law_problem};
@@ -82,30 +83,40 @@ pub fn population(
         campaign.covariates.clone_from(&request.covariates);
     }
     on_threads(request.fit.threads, || {
-        estimate(&campaign, request.posterior, progress)
+        let priors = campaign.fit.without_priors();
+        let rig = find_rig(&mut campaign)?;
+        let question = Question {
+            campaign: &campaign,
+            rig: &rig,
+            command: "population",
+            options: format!("posterior: {}", request.posterior),
+        };
+        let work = || estimate(&campaign, &rig, request.posterior, progress);
+        let (mut outcome, told) = answer(&question, request.fit.reuse, work)?;
+        outcome.findings.extend(told);
+        outcome.findings.extend(priors);
+        Ok(outcome)
     })
 }
 
 fn estimate(
     campaign: &ImpactCampaign,
+    rig: &RigFound,
     posterior: bool,
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
-    let mut campaign = campaign.clone();
-    let rig = find_rig(&mut campaign)?;
-    let campaign = &campaign;
     let law = &campaign.fit.laws[0];
-    let problem = law_problem(law, &campaign.fit.free);
+    let problem = law_problem(law, &campaign.fit);
     let mut first = campaign.clone();
     first.fit.laws.truncate(1);
-    let (impacts, mut failed) = impacts_and_left_out(&first, &rig, progress)?;
+    let (impacts, mut failed) = impacts_and_left_out(&first, rig, progress)?;
     let left_out: BTreeSet<String> = failed.iter().map(|own| own.id.clone()).collect();
     let entries = campaign.shared.entries.iter();
     first.shared.entries = entries
         .filter(|own| !left_out.contains(&own.id))
         .cloned()
         .collect();
-    let (members, unusable) = members(&first, &rig, &problem, progress)?;
+    let (members, unusable) = members(&first, rig, &problem, progress)?;
     failed.extend(unusable);
     if members.is_empty() {
         return Err(Error::NothingFitted {
@@ -152,7 +163,7 @@ fn estimate(
         }
     };
     add_bench(&mut fit, &impacts, &varying);
-    let mut findings = findings(campaign, &rig, &fit, &specimens);
+    let mut findings = findings(campaign, rig, &fit, &specimens);
     let remarks = posterior.iter().flat_map(|posterior| posterior.findings());
     findings.extend(remarks.map(|finding| population_finding(&finding)));
     let method = "REML, Laplace";

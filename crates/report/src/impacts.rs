@@ -8,6 +8,7 @@ use crate::figures::posterior::figure_of_posterior;
 use crate::figures::profiles::figure_of_profiles;
 use crate::figures::residuals::figure_of_residuals;
 use crate::figures::stacked::figure_of_stacked;
+use crate::figures::trends::figure_of_trends;
 use crate::methods::methods;
 use windfall_campaign::impacts::figure_impact::figure_of_impact;
 use windfall_campaign::impacts::groups::{
@@ -21,6 +22,7 @@ use windfall_campaign::impacts::text::{
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::{CampaignOutcome, ImpactOutcome};
 use windfall_campaign::result::quantity::quantities_named;
+use windfall_campaign::result::trend::times_of;
 use windfall_campaign::settings::model::ImpactCampaign;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::page::{CaptionedTable, Section};
@@ -50,6 +52,7 @@ pub fn sections_of_campaign(
         Section::of_words("Methods", methods(campaign, outcome)),
         results(outcome),
     ];
+    let times = times_of(&campaign.shared);
     for law in laws_of(outcome) {
         let impacts: Vec<&ImpactOutcome> = counted_of_law(outcome, law);
         let covariates = covariates_of(campaign, &impacts).into_iter();
@@ -58,7 +61,8 @@ pub fn sections_of_campaign(
         let figures = pairs
             .chain(over)
             .chain(figure_of_predictions(law, &impacts))
-            .chain(figure_of_stacked(law, &impacts));
+            .chain(figure_of_stacked(law, &impacts))
+            .chain(figure_of_trends(law, &impacts, &outcome.trends, &times));
         sections.push(Section {
             figures: figures.collect(),
             ..Section::of_words(&format!("Figures: {law}"), Vec::new())
@@ -116,7 +120,7 @@ fn results(outcome: &CampaignOutcome) -> Section {
                 .chain(
                     laws_of(outcome)
                         .first()
-                        .and_then(|law| common_line(&groups_of(outcome, law))),
+                        .and_then(|law| common_line(outcome, &groups_of(outcome, law))),
                 )
                 .map(|line| format!("{line}."))
                 .collect(),

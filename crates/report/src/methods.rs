@@ -1,11 +1,12 @@
 //! What was done to the recordings, in the words of a methods section.
 
 use windfall_campaign::result::outcome::CampaignOutcome;
-use windfall_campaign::settings::model::{ImpactCampaign, MassPlan, RigPlan};
+use windfall_campaign::settings::model::{ImpactCampaign, KnownKind, MassPlan, RigPlan};
 use windfall_contact::law::EndRule;
 use windfall_files::text::number::plain;
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::fit::problem::{FitOptions, NoiseModel, Weighting};
+use windfall_identify::samples::Quantity;
 use windfall_measure::words::{filters_text, laws_text, listed, threshold_text};
 use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, Orientation};
@@ -17,6 +18,7 @@ pub fn methods(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Vec<Stri
     paragraphs.push(signals(campaign));
     paragraphs.extend(laws_text(&campaign.fit.laws, &campaign.fit.free));
     paragraphs.push(cost(&campaign.fit.options));
+    paragraphs.extend(given(campaign));
     paragraphs.push(nuisances(&campaign.fit.options, outcome));
     paragraphs.push(intervals(&campaign.fit.options));
     paragraphs
@@ -165,6 +167,27 @@ fn cost(options: &FitOptions) -> String {
     )
 }
 
+/// Priors, bounds and noise that the user gave.
+fn given(campaign: &ImpactCampaign) -> Option<String> {
+    let texts = campaign.fit.known_texts.iter();
+    let mut told: Vec<String> = texts
+        .map(|own| match own.kind {
+            KnownKind::Prior => format!("a normal prior of {}, {}", own.name, own.text),
+            KnownKind::Bounds => format!("bounds of {}, {}", own.name, own.text),
+        })
+        .collect();
+    let noise = Quantity::ALL.into_iter().zip(campaign.fit.options.noise_sd);
+    told.extend(noise.filter_map(|(quantity, sd)| {
+        let sd = plain(sd?);
+        Some(format!(
+            "noise of {}, {sd} {}",
+            quantity.name(),
+            quantity.unit()
+        ))
+    }));
+    (!told.is_empty()).then(|| format!("Given beside the recordings: {}.", told.join("; ")))
+}
+
 fn nuisances(options: &FitOptions, outcome: &CampaignOutcome) -> String {
     let all = outcome.impacts.len();
     let estimated = |name: &str| {
@@ -202,7 +225,7 @@ fn intervals(options: &FitOptions) -> String {
         ),
         IntervalMethod::Posterior => format!(
             "quantiles of the posterior (no-U-turn sampler, {} chains of {} draws, flat priors on \
-             the logarithms, seed {})",
+             the logarithms of what has no other, seed {})",
             asked.chains, asked.draws, asked.seed
         ),
     };

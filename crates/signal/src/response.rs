@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 
 /// Steps of the calculation for each period of what swings.
 const STEPS: f64 = 60.0;
-/// Most steps between two samples.
-const MOST_STEPS: f64 = 1000.0;
+/// Most steps between two samples: what swings faster shows nothing there.
+const MOST_STEPS: f64 = 100.0;
 
 /// A swing of one mass on one spring.
 ///

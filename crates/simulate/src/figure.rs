@@ -89,8 +89,9 @@ mod tests {
             law: law.to_owned(),
             laws: None,
             mass: "0.2 kg".to_owned(),
-            velocity: "0.5 m/s".to_owned(),
-            driving_acceleration: "0 m/s^2".to_owned(),
+            velocity: Some("0.5 m/s".to_owned()),
+            height: None,
+            driving_acceleration: None,
             end: "force-zero".to_owned(),
         })
         .unwrap()

@@ -46,6 +46,9 @@ pub struct SimulatedImpact {
     pub nominal_restitution: Option<f64>,
     /// Kinetic energy lost.
     pub absorbed_energy: f64,
+    /// Work of gravity or the driving acceleration over the contact, which the fruit takes up
+    /// beside the kinetic energy: ∫ F dx is the sum of both.
+    pub driving_work: f64,
     /// Integral of the force over the contact.
     pub impulse: f64,
     /// What a reader must know of the law and its use.
@@ -147,6 +150,7 @@ fn simulated(
         restitution: summary.restitution,
         nominal_restitution: law.nominal_restitution(),
         absorbed_energy: summary.absorbed_energy,
+        driving_work: rig.driving_work(summary.final_displacement),
         impulse: summary.impulse,
         findings: Vec::new(),
     }

@@ -34,7 +34,11 @@ fn rows_of(impact: &SimulatedImpact) -> Vec<Row> {
     if let Some(nominal) = impact.nominal_restitution {
         rows.push(("nominal_restitution", nominal, "1"));
     }
-    rows.extend(rows![of impact: absorbed_energy "J", impulse "N s"]);
+    rows.extend(rows![of impact: absorbed_energy "J"]);
+    if impact.driving_work != 0.0 {
+        rows.push(("driving_work", impact.driving_work, "J"));
+    }
+    rows.extend(rows![of impact: impulse "N s"]);
     rows
 }
 

@@ -60,10 +60,14 @@ fn recovers_an_inertia_that_is_not_what_the_file_says() {
         "inertia = \"0.0150675",
     );
     let found = said(&fitted(folder.path()));
-    let [(code, message)] = &found[..] else {
+    let [(code, message), (cause, named)] = &found[..] else {
         panic!("{found:?}")
     };
-    assert_eq!(code, "bench-gain");
+    assert_eq!([code, cause], ["bench-gain", "bench-cause"]);
+    assert!(
+        named.contains("best explained by a force that reads"),
+        "{named}"
+    );
     assert!(
         message.contains("inertia") && message.contains("too large"),
         "{message}"
@@ -80,7 +84,8 @@ fn recovers_a_force_that_is_late() {
     );
     let found = said(&fitted(folder.path()));
     let codes: Vec<&str> = found.iter().map(|own| own.0.as_str()).collect();
-    assert_eq!(codes, ["bench-delay"], "{found:?}");
+    assert_eq!(codes, ["bench-delay", "bench-cause"], "{found:?}");
+    assert!(found[1].1.contains("µs late"), "{found:?}");
 }
 
 /// Deviations of k and c, and what the bench adds to the mean of k.
@@ -189,6 +194,33 @@ fn recovers_inertia_gain_and_delay_that_are_asked_for() {
 }
 
 #[test]
+fn rejects_instruments_that_cannot_have_made_the_recordings() {
+    let slow = "sensor_frequency = \"1 Hz\"\nsensor_damping = \"0.5\"\n";
+    let soft = "arm_frequency = \"1 kHz\"\narm_damping = \"0.1\"\narm_compliance = \"1 m/N\"\n";
+    for (lines, channel) in [(slow, "force"), (soft, "displacement")] {
+        let folder = campaign();
+        let told = format!("[response]\n{lines}[contact]\n");
+        tell(folder.path(), "[contact]\n", &told);
+        let (status, out, told) = windfall("fit campaign", folder.path());
+        assert_eq!(status, Some(1), "{told}");
+        let said = format!("the {channel} would be recorded");
+        assert!(out.contains(&said), "{out}");
+    }
+}
+
+#[test]
+fn rejects_an_estimate_of_instruments_that_do_nothing() {
+    for quantity in ["sensor_frequency", "arm_frequency", "force_filter"] {
+        let folder = campaign();
+        let told = format!("[fit]\nestimate = [\"{quantity}\"]\n");
+        tell(folder.path(), "[fit]\n", &told);
+        let (status, _, told) = windfall("fit campaign", folder.path());
+        assert_eq!(status, Some(2), "{told}");
+        assert!(told.contains("16 impacts leave does not show it"), "{told}");
+    }
+}
+
+#[test]
 fn rejects_what_the_bench_cannot_tell() {
     for (old, new, said) in [
         ("kg m^2\"", "kg m^2 ± 0.0002\"", "has no unit"),
@@ -212,6 +244,41 @@ fn rejects_what_the_bench_cannot_tell() {
             "[contact]\n",
             "[contact]\npre_trigger = \"2 ± 1 ms\"\n",
             "takes no ±",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nsensor_frequency = \"2 kHz\"\n[contact]\n",
+            "without sensor_damping",
+        ),
+        (
+            "[contact]\n",
+            "[response]\narm_compliance = \"0.1 um/N\"\n[contact]\n",
+            "without arm_frequency",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nsensor_frequency = \"2 kHz\"\nsensor_damping = \"1.5\"\n[contact]\n",
+            "must be between 0 and 1",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nforce_filter = \"0 Hz\"\n[contact]\n",
+            "must be above zero",
+        ),
+        (
+            "[contact]\n",
+            "[response]\nforce_filter = \"5 ms\"\n[contact]\n",
+            "force_filter",
+        ),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"sensor_frequency\", \"arm_frequency\"]\n",
+            "beside sensor_frequency already",
+        ),
+        (
+            "[fit]\n",
+            "[fit]\nestimate = [\"sensor_damping\"]\n",
+            "expected one of inertia",
         ),
     ] {
         let folder = campaign();

@@ -387,12 +387,12 @@ fn reference_every_key_of_a_campaign_is_explained() {
     let page = page("campaign.md");
     let readers = [
         "campaign/src/settings",
-        "campaign/src/taps",
-        "campaign/src/compression",
+        "measure/src/taps",
+        "measure/src/compression",
         "drop/src",
         "cards/src/user_laws",
-        "campaign/src/repeats",
-        "campaign/src/relaxation",
+        "measure/src/repeats",
+        "measure/src/relaxation",
     ];
     for reader in readers {
         let file = format!("{reader}/file.rs");

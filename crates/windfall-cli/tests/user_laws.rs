@@ -439,3 +439,66 @@ fn rejects_what_is_no_law_or_card() {
     let unknown = refused(&[&IMPACT[..], &["--law", "my-law(k=1)"]].concat());
     assert!(unknown.contains("unknown law \"my-law\""), "{unknown}");
 }
+
+/// A law with memory from recordings to a card; what is wrong with one names its line.
+#[test]
+fn recovers_a_law_with_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let law = "[laws.mine]\nforce = \"k1*x\"\nunloading = \"F_max + k2*(x - x_max)\"\n\
+               parameters.k1 = { unit = \"N/m\", start = 20000 }\n\
+               parameters.k2 = { unit = \"N/m\", start = 30000 }\n";
+    std::fs::write(folder.path().join("laws.toml"), law).unwrap();
+    let run = |line: &str| crate::counted::windfall(line, folder.path());
+    let (status, _, told) = run(
+        "simulate carriage --laws laws.toml --law mine(k1=15000,k2=40000) --mass 0.2kg \
+         --velocity 0.5m/s --specimens 3 --recordings campaign",
+    );
+    assert_eq!(status, Some(0), "{told}");
+    let found = crate::counted::fitted(folder.path());
+    for impact in found["impacts"].as_array().unwrap() {
+        for (name, truth) in [("k1", 15_000.0), ("k2", 40_000.0)] {
+            let own = &impact["parameters"][name];
+            let (value, sd) = (own["value"].as_f64().unwrap(), own["sd"].as_f64().unwrap());
+            assert!(
+                (value - truth).abs() < 5.0 * sd && sd < 0.02 * truth,
+                "{impact}"
+            );
+        }
+    }
+    let (status, _, told) = run("fit campaign --card card.toml");
+    assert_eq!(status, Some(0), "{told}");
+    let card = std::fs::read_to_string(folder.path().join("card.toml")).unwrap();
+    assert!(
+        card.contains("unloading = \"F_max + k2*(x - x_max)\""),
+        "{card}"
+    );
+    let (status, out, told) =
+        run("simulate impact --law card.toml --mass 0.2kg --velocity 0.5m/s --format json");
+    assert_eq!(status, Some(0), "{told}");
+    // e = √(k1/k2) of Walton and Braun.
+    let found: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let restitution = found["restitution"].as_f64().unwrap();
+    assert!(
+        (restitution - (15.0_f64 / 40.0).sqrt()).abs() < 0.005,
+        "{restitution}"
+    );
+
+    let refused = |law: &str| {
+        std::fs::write(folder.path().join("wrong.toml"), law).unwrap();
+        let (status, _, told) = run("card show --laws wrong.toml");
+        assert_eq!(status, Some(2), "{told}");
+        told
+    };
+    let jump = refused(&law.replace("F_max +", "0.5*F_max +"));
+    assert!(
+        jump.contains("wrong.toml, line 3: [laws.mine] unloading") && jump.contains("jumps"),
+        "{jump}"
+    );
+    let table =
+        "[laws.mine]\ndisplacement_m = [0, 1e-3]\nforce_N = [0, 10]\nunloading = \"F_max\"\n";
+    let told = refused(table);
+    assert!(
+        told.contains("line 4") && told.contains("a table has no memory"),
+        "{told}"
+    );
+}

@@ -3,6 +3,7 @@
 
 use crate::impacts::two_stage::{Estimates, Population, two_stage};
 use crate::result::counted::reasons_counted;
+use crate::result::given::held_together;
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::summary::common_moves;
 use crate::settings::model::{Campaign, ImpactCampaign, RigPlan};
@@ -53,6 +54,15 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
     }
     let estimates = estimates_of(&impacts);
     let mut population = two_stage(&estimates);
+    let held = held_together(&campaign.fit, kind, &impacts);
+    if !held.is_empty() {
+        population.between = None;
+        population.method = format!(
+            "nothing is said of how fruit differ, since a prior holds their estimates of {} \
+             together",
+            held.join(" and ")
+        );
+    }
     let common = add_common(&mut population.of_mean, &estimates, &impacts);
     let law = law_of(campaign, kind, &impacts, &estimates, &population)?;
     let mut cautions: Vec<String> = outcome.findings.iter().map(|f| f.message.clone()).collect();
@@ -81,7 +91,7 @@ pub fn card_of_fit(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> Resu
             of_what: match common {
                 true => {
                     "the median fruit, by the scatter between fruit and the uncertainty of \
-                         the bench"
+                         the bench and of priors"
                 }
                 false => "the median fruit, by the scatter between fruit",
             }

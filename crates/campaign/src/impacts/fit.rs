@@ -9,7 +9,7 @@ use crate::recording::pendulum_angles::add_angles;
 use crate::result::counted::left_out_under_all_laws;
 use crate::result::fit_outcome::impact_outcome;
 use crate::result::outcome::ImpactOutcome;
-use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry};
+use crate::settings::model::{Campaign, FitPlan, ImpactCampaign, ImpactEntry};
 use serde_json::{Map, Value};
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
@@ -114,7 +114,7 @@ pub fn fit_law(
     (impact, findings): (&Impact, &[Finding]),
     law: &LawExpression,
 ) -> Result<ImpactOutcome, Error> {
-    let problem = law_problem(law, &campaign.fit.free);
+    let problem = law_problem(law, &campaign.fit);
     let mut options = campaign.fit.options;
     // Each impact its own chance, whatever the others are.
     options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
@@ -141,12 +141,15 @@ fn seed_of_name(seed: u64, name: &str) -> u64 {
 }
 
 /// The usual question about a law: exponents that are left out have their usual
-/// values and are held, and the parameters named in `free` are estimated.
-pub fn law_problem(law: &LawExpression, free: &[String]) -> LawProblem {
+/// values and are held, and the parameters that a plan frees or has priors of are estimated.
+pub fn law_problem(law: &LawExpression, plan: &FitPlan) -> LawProblem {
     let mut problem = LawProblem::from_expression(law);
-    let parameters = law.kind.describe().parameters;
-    for (parameter, is_free) in parameters.iter().zip(&mut problem.free) {
-        *is_free |= free.iter().any(|name| name == parameter.name);
+    let known = plan.known.iter().filter(|(kind, _)| *kind == law.kind);
+    problem.known = known.map(|(_, known)| known.clone()).collect();
+    for (i, parameter) in law.kind.describe().parameters.iter().enumerate() {
+        let known = problem.known(parameter.name);
+        problem.free[i] |= plan.free.iter().any(|name| name == parameter.name)
+            || known.is_some_and(|known| known.prior.is_some());
     }
     problem
 }

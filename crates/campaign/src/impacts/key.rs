@@ -6,6 +6,7 @@ use crate::settings::model::{ImpactCampaign, ImpactEntry, TimePlan};
 use serde_json::{Map, Value, json};
 use windfall_contact::expression::LawExpression;
 use windfall_files::provenance::{REVISION, digest_text};
+use windfall_identify::fit::problem::Known;
 use windfall_identify::rig::kind::Rig;
 
 /// SHA-256 over everything that the fit of one law to one impact depends on.
@@ -53,6 +54,11 @@ pub fn impact_key(
                 .any(|p| p.name == name.as_str())
         })
         .collect();
+    let known = campaign.fit.known.iter();
+    let known: Vec<&Known> = known
+        .filter(|(kind, _)| *kind == law.kind)
+        .map(|(_, known)| known)
+        .collect();
     let everything = json!({
         "revision": REVISION,
         "recording": digest,
@@ -66,6 +72,7 @@ pub fn impact_key(
         "angles": format!("{:?}", angles_of_entry(campaign, entry).ok()),
         "law": format!("{:?}", law),
         "free": free,
+        "known": format!("{known:?}"),
         "fit": campaign.fit.options,
     });
     digest_text(&everything.to_string())
@@ -78,6 +85,7 @@ pub fn run_options(campaign: &ImpactCampaign) -> Map<String, Value> {
     let options = [
         ("laws", json!(laws)),
         ("free", json!(fit.free)),
+        ("known", json!(fit.known_texts)),
         ("contact", json!(campaign.contact)),
         ("fit", json!(fit.options)),
     ];

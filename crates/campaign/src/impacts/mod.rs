@@ -1,5 +1,6 @@
 //! `windfall fit` for single impacts: the main job.
 
+pub mod answer;
 pub mod bench;
 pub mod card;
 pub mod csv;

@@ -36,7 +36,10 @@ fn residuals(
     let Some(law) = campaign.fit.laws.first() else {
         return Vec::new();
     };
-    let problem = law_problem(law, &campaign.fit.free);
+    // By the impacts alone: a prior of the law would count once in each of them.
+    let mut plan = campaign.fit.clone();
+    plan.without_priors();
+    let problem = law_problem(law, &plan);
     let options = FitOptions {
         bench: BenchSd::default(),
         intervals: IntervalOptions::default(),
@@ -45,8 +48,7 @@ fn residuals(
     let mass = Some(rig.effective_mass());
     let of = |entry: &&ImpactEntry| {
         let (impact, _) = extract_recording(campaign, entry, mass).ok()?;
-        let found = bench_residuals(&impact, rig, std::slice::from_ref(&problem), &options);
-        found.ok()?.pop().flatten()
+        bench_residuals(&impact, rig, &problem, &options).ok()
     };
     entries.par_iter().filter_map(of).collect()
 }
@@ -56,7 +58,7 @@ fn residuals(
 /// says.
 ///
 /// # Errors
-/// Fewer than five impacts can be fitted.
+/// Fewer than five impacts can be fitted, or their residuals do not show it.
 pub(crate) fn estimate_response(
     campaign: &mut ImpactCampaign,
     rig: &Rig,
@@ -76,13 +78,24 @@ pub(crate) fn estimate_response(
     };
     let told = campaign.fit.options.response;
     let mut found: Option<CauseFound> = None;
-    for _ in 0..ROUNDS {
+    let without = Cause {
+        pole: false,
+        sensor: false,
+        arm: false,
+        ..cause
+    };
+    for round in 0..ROUNDS {
         let entries = campaign.shared.entries.iter();
         let entries: Vec<&ImpactEntry> = entries.filter(|own| excluded(own).is_none()).collect();
         let residuals = residuals(campaign, rig, &entries);
         let fitted = residuals.len();
-        found = likeliest_causes(&residuals, &[cause]).pop();
-        let Some(found) = &found else {
+        let both = likeliest_causes(&residuals, &[cause, without]);
+        let of = |cause: Cause| both.iter().find(|own| own.cause == cause);
+        // In the second round it is taken off already.
+        let shown = of(cause)
+            .zip(of(without))
+            .filter(|(with, without)| round > 0 || without.aic - with.aic >= BETTER);
+        let Some((own, _)) = shown else {
             return Err(Error::from(CampaignError::ResponseUntold {
                 path: campaign.shared.directory.clone(),
                 quantity: quantity.name(),
@@ -91,16 +104,17 @@ pub(crate) fn estimate_response(
         };
         let mut response = told;
         if cause.pole {
-            response.pole = found.fault.response.pole;
+            response.pole = own.fault.response.pole;
         }
         if cause.sensor {
-            response.sensor = found.fault.response.sensor;
+            response.sensor = own.fault.response.sensor;
         }
         if cause.arm {
-            response.arm = found.fault.response.arm;
+            response.arm = own.fault.response.arm;
         }
         campaign.fit.options.response = response;
         campaign.contact.response = response;
+        found = Some(*own);
     }
     if let Some(found) = found {
         keep(campaign, quantity, &found);

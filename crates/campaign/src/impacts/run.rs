@@ -14,9 +14,12 @@ use crate::recording::read::recording_path;
 use crate::recording::request::{RecordingRequest, campaign_of_file};
 use crate::result::bench::{bench_findings, far_estimates, pooled_bench};
 use crate::result::counted::mark_left_out;
+use crate::result::given::given_findings;
 use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::stacked::law_misfits;
 use crate::result::summary::{summarise, summarise_groups};
+use crate::result::trend::{times_of, trends};
+use crate::result::trend_findings::trend_findings;
 use crate::settings::kind::CAMPAIGN_FILE;
 use crate::settings::model::{BenchFound, Campaign, ImpactCampaign, ImpactEntry};
 use crate::settings::read::read_campaign;
@@ -25,6 +28,7 @@ use std::path::Path;
 use windfall_cards::law_use::{LawUse, findings_of_use};
 use windfall_cards::read_card::write_card;
 use windfall_contact::expression::typical;
+use windfall_contact::laws::kind::LawKind;
 use windfall_draw::files::{FigureFolder, write_figure};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -282,6 +286,10 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let bench = pooled_bench(&impacts);
     let of_bench = bench_findings(&rig.rig, &campaign.bench.sd, &bench);
     let misfits = law_misfits(&impacts, !of_bench.is_empty());
+    let times = times_of(&campaign.shared);
+    let trends = trends(&impacts, &times);
+    let laws: Vec<LawKind> = campaign.fit.laws.iter().map(|law| law.kind).collect();
+    let of_trends = trend_findings(&trends, &laws, !of_bench.is_empty(), &misfits);
     let estimated = estimated(campaign);
     let far = far_estimates(&estimated, &impacts);
     let cause = match of_bench.is_empty() {
@@ -289,6 +297,8 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         false => name_cause(campaign, &rig.rig, &impacts),
     };
     findings.extend(of_bench.into_iter().chain(far).chain(misfits).chain(cause));
+    findings.extend(of_trends.into_iter().chain(times.unread));
+    findings.extend(given_findings(&campaign.fit, &impacts));
     findings.extend(same_recordings(&campaign.shared, &evaluated.digests));
     findings.extend(skewed(&groups));
     CampaignOutcome {
@@ -298,6 +308,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         effective_mass: rig.mass,
         bench,
         estimated,
+        trends,
         status: evaluated.status,
         impacts,
         failed: std::mem::take(&mut evaluated.failed),

@@ -68,7 +68,7 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
         let groups = groups_of(outcome, law);
         let table = parameter_table(&groups, &impacts);
         let _ = writeln!(text, "{table}");
-        if let Some(line) = common_line(&groups) {
+        if let Some(line) = common_line(outcome, &groups) {
             let _ = writeln!(text, "{}", paragraph(&line, 2));
         }
     }
@@ -159,9 +159,17 @@ pub fn bench_lines(outcome: &CampaignOutcome) -> Vec<String> {
     estimated.chain(pooled).collect()
 }
 
-/// What the bench makes of the means, where something of it is uncertain.
-pub fn common_line(groups: &[&GroupOutcome]) -> Option<String> {
+/// What the uncertainties that all impacts share make of the means.
+pub fn common_line(outcome: &CampaignOutcome, groups: &[&GroupOutcome]) -> Option<String> {
     let group = groups.first()?;
+    let causes = outcome.impacts.iter().flat_map(|impact| &impact.common.0);
+    let (priors, bench): (Vec<_>, Vec<_>) =
+        causes.partition(|(name, _)| name.starts_with("prior."));
+    let of = match (priors.is_empty(), bench.is_empty()) {
+        (true, _) => "the bench",
+        (false, true) => "the priors",
+        (false, false) => "bench and priors",
+    };
     let parts = group.parameters.0.iter().filter_map(|(name, spread)| {
         let part = spread.common_sd? / spread.mean.abs();
         Some(format!("{name} by {:.2} %", 100.0 * part))
@@ -169,7 +177,7 @@ pub fn common_line(groups: &[&GroupOutcome]) -> Option<String> {
     let parts: Vec<String> = parts.collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "The uncertainty of the bench shifts all impacts together, {}; more impacts do not \
+            "The uncertainty of {of} shifts all impacts together, {}; more impacts do not \
              reduce it",
             parts.join(", ")
         )

@@ -2,20 +2,24 @@
 
 use crate::settings::fit::{
     ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS, enough_work, hold_velocity, known_velocity,
-    quantities_named, unknown_parameter,
+    noise_counts, quantities_named, unknown_parameter,
 };
 use crate::settings::kind::CampaignKind;
-use crate::settings::model::{Campaign, ImpactCampaign, ImpactEntry, Specimen};
+use crate::settings::known::{has, known_of};
+use crate::settings::model::{
+    Campaign, FitPlan, ImpactCampaign, ImpactEntry, KnownKind, KnownText, Specimen,
+};
 use std::path::PathBuf;
 use windfall_cards::user_laws::read::laws_of_option;
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::laws::kind::LawKind;
 use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
-use windfall_files::option_value::{chosen, unusable};
+use windfall_files::option_value::{chosen, positive, unusable};
 use windfall_files::text::toml_source::suggestion;
 use windfall_files::write_file::check_outputs;
 use windfall_identify::fit::problem::FitOptions;
+use windfall_identify::samples::Quantity as FitQuantity;
 
 /// Options of `fit`, which override the campaign's settings.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +34,12 @@ pub struct FitRequest {
     /// Parameter to estimate although it has a value, such as an exponent; may be repeated
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub free: Vec<String>,
+    /// What is known of a parameter before the data, "k=2.4e5 ± 0.3e5 N/m^1.5"; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "prior", value_name = "NAME=QUANTITY"))]
+    pub priors: Vec<String>,
+    /// Values outside of which a parameter is not searched, "c=0 … 50 N s/m"; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "bounds", value_name = "NAME=RANGE"))]
+    pub bounds: Vec<String>,
     /// Quantities of the cost function: displacement, rate, force, acceleration
     #[cfg_attr(
         feature = "clap",
@@ -42,6 +52,10 @@ pub struct FitRequest {
     /// Noise of the channels: as the recording shows it, or white sample by sample
     #[cfg_attr(feature = "clap", arg(long, value_parser = ["automatic", "white"], value_name = "NOISE"))]
     pub noise: Option<String>,
+    /// Noise of a sample of a quantity, "force=0.2 N", in place of what recordings show; may be
+    /// repeated
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME=QUANTITY"))]
+    pub noise_sd: Vec<String>,
     /// How the 95 % intervals are made
     #[cfg_attr(feature = "clap", arg(long, value_parser = ["asymptotic", "profile", "bootstrap", "posterior"], value_name = "HOW"))]
     pub intervals: Option<String>,
@@ -132,7 +146,55 @@ pub fn apply_request(campaign: &mut ImpactCampaign, request: &FitRequest) -> Res
     let fit = &mut campaign.fit;
     laws_and_free(&mut fit.laws, &mut fit.free, &fit.user, request)?;
     apply_options(&mut campaign.fit.options, request)?;
+    apply_known(&mut campaign.fit, request)?;
     apply_group(&mut campaign.shared, request)
+}
+
+/// Puts priors and bounds of the request in the place of those of the campaign on the same
+/// parameters, and says what all mean for the laws that are fitted.
+fn apply_known(plan: &mut FitPlan, request: &FitRequest) -> Result<(), Error> {
+    let priors = request.priors.iter().map(|own| (KnownKind::Prior, own));
+    let bounds = request.bounds.iter().map(|own| (KnownKind::Bounds, own));
+    let mut asked = Vec::new();
+    for (kind, text) in priors.chain(bounds) {
+        let option = format!("--{} {text}", kind.name());
+        let Some((name, quantity)) = text.split_once('=') else {
+            let problem = match kind {
+                KnownKind::Prior => "expected NAME=QUANTITY, such as \"k=2.4e5 ± 0.3e5 N/m^1.5\"",
+                KnownKind::Bounds => "expected NAME=RANGE, such as \"c=0 … 50 N s/m\"",
+            };
+            return Err(unusable(option, problem));
+        };
+        let (name, text) = (name.trim().to_owned(), quantity.trim().to_owned());
+        if asked
+            .iter()
+            .any(|own: &KnownText| own.kind == kind && own.name == name)
+        {
+            return Err(unusable(option, "it is given twice; keep one"));
+        }
+        asked.push(KnownText { kind, name, text });
+    }
+    let laws = &plan.laws;
+    plan.known_texts.retain(|own| {
+        let replaced = asked
+            .iter()
+            .any(|new| new.kind == own.kind && new.name == own.name);
+        // The campaign's list may name parameters of laws that are not fitted now.
+        !replaced && laws.iter().any(|law| has(law, &own.name))
+    });
+    let told = plan.known_texts.len();
+    plan.known_texts.extend(asked);
+    plan.known = known_of(plan).map_err(|(index, problem)| {
+        let KnownText { kind, name, text } = &plan.known_texts[index];
+        match index < told {
+            true => unusable(
+                format!("[fit.{}] {name} = \"{text}\"", kind.name()),
+                problem,
+            ),
+            false => unusable(format!("--{} {name}={text}", kind.name()), problem),
+        }
+    })?;
+    Ok(())
 }
 
 /// The user's laws of the campaign, overridden by those of the file of the same name.
@@ -217,6 +279,11 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
     if let Some(word) = &request.noise {
         options.noise = chosen("--noise", word, &NOISES)?;
     }
+    for text in &request.noise_sd {
+        let (quantity, sd) = noise_sd(text)?;
+        options.noise_sd[quantity as usize] = Some(sd);
+    }
+    noise_counts(options).map_err(|problem| unusable("--weights inverse-mean", problem))?;
     if let Some(word) = &request.intervals {
         options.intervals.method = chosen("--intervals", word, &INTERVALS)?;
     }
@@ -265,6 +332,22 @@ fn apply_options(options: &mut FitOptions, request: &FitRequest) -> Result<(), E
     Ok(())
 }
 
+/// "force=0.2 N"
+fn noise_sd(text: &str) -> Result<(FitQuantity, f64), Error> {
+    let option = format!("--noise-sd {text}");
+    let (name, value) = text.split_once('=').unwrap_or((text, ""));
+    let Some(quantity) = FitQuantity::ALL.into_iter().find(|own| own.name() == name) else {
+        let names = FitQuantity::ALL.map(FitQuantity::name);
+        let hint = suggestion(name, names);
+        let problem = format!(
+            "expected NAME=QUANTITY with one of {}{hint}",
+            names.join(", ")
+        );
+        return Err(unusable(option, problem));
+    };
+    Ok((quantity, positive(&option, value, quantity.unit())?))
+}
+
 /// Columns of both tables.
 fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a str> {
     let specimen = specimens.first().map_or(&[][..], |s| &s.cells);
@@ -289,8 +372,11 @@ pub fn apply_request_to_measurement(
         ("--law and --free", laws && !fits_laws),
         ("--laws", request.laws_file.is_some()),
         ("--card", request.card.is_some()),
+        ("--prior", !request.priors.is_empty()),
+        ("--bounds", !request.bounds.is_empty()),
         ("--quantities", !request.quantities.is_empty()),
         ("--weights", request.weights.is_some()),
+        ("--noise-sd", !request.noise_sd.is_empty()),
         ("--noise", request.noise.is_some()),
         ("--intervals", request.intervals.is_some()),
         ("--initial-velocity", request.initial_velocity.is_some()),

@@ -154,6 +154,8 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Impac
         rig,
         fit: FitPlan {
             laws: Vec::new(),
+            known_texts: Vec::new(),
+            known: Vec::new(),
             user: Vec::new(),
             free: Vec::new(),
             options: FitOptions::default(),
@@ -303,6 +305,7 @@ fn channel_plan(text: &str) -> Result<ChannelPlan, Error> {
     Ok(ChannelPlan {
         scale_sd: 0.0,
         delay_sd: 0.0,
+        noise_sd: None,
         table: kind.table,
         line: 0,
         quantity: kind.quantity,

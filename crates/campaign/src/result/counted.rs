@@ -14,11 +14,12 @@ use windfall_identify::rig::kind::Rig;
 pub const NOTE_COLUMN: &str = "note";
 
 /// Findings after which the values of a fit are no estimates.
-const NO_ESTIMATES: [&str; 7] = [
+const NO_ESTIMATES: [&str; 8] = [
     "gap-in-contact",
     "no-convergence",
     "singular",
     "at-bound",
+    "prior-contradicted",
     "clipped",
     "contact-at-start",
     "shaking",

@@ -131,7 +131,7 @@ fn common(fit: &Fit) -> Named<Named<f64>> {
     let names = || estimates(fit).map(|e| e.name.clone());
     let of = |own: &CommonShift| names().zip(own.shifts.iter().copied()).collect();
     let all = fit.common.iter();
-    all.map(|own| (own.quantity.name(), of(own))).collect()
+    all.map(|own| (own.cause.name(), of(own))).collect()
 }
 
 /// "k, c" → correlation, of all pairs of estimates.

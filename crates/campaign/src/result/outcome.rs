@@ -182,6 +182,34 @@ pub struct BenchOutcome {
     pub impacts: usize,
 }
 
+/// How a quantity that should be constant goes over a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
+pub struct TrendOutcome {
+    /// Name of the law.
+    pub law: String,
+    /// Parameter of the law, "restitution" or "force_gain".
+    pub quantity: String,
+    /// What it may depend on: "impact_velocity", "order" or "time_of_day".
+    pub over: String,
+    /// Change of the logarithm of the quantity: with ln of the velocity, from the first to the
+    /// last row of impacts.csv, or per hour.
+    pub slope: f64,
+    /// Its standard uncertainty.
+    pub sd: f64,
+    /// Range of what it may depend on: of ln v, of the part of the campaign, or in hours.
+    pub range: f64,
+    /// Probability of as much by chance, times the number of slopes that were looked at.
+    pub p: f64,
+    /// Impacts.
+    pub impacts: usize,
+    /// Specimens.
+    pub specimens: usize,
+    /// Whether only differences between impacts on one specimen count.
+    pub within_specimens: bool,
+    /// Correlation of the order of impacts with what the quantity is shown over; 1 for order.
+    pub order_correlation: f64,
+}
+
 /// Everything that `fit` gives for a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct CampaignOutcome {
@@ -200,6 +228,10 @@ pub struct CampaignOutcome {
     /// Quantities of the bench that were estimated over all impacts: "inertia".
     #[serde(default)]
     pub estimated: Named<BenchOutcome>,
+    /// Slopes of parameters over velocity, and of parameters, restitution and the gain of the
+    /// force over order and time of day.
+    #[serde(default)]
+    pub trends: Vec<TrendOutcome>,
     /// How the results came about.
     pub status: StatusOutcome,
     /// One entry per impact and law.

@@ -131,6 +131,7 @@ pub fn channel_plan(
     };
     let ((scale, scale_sd), offset) = calibration(source, kind, channel)?;
     let (delay, delay_sd) = delay(source, kind, file)?;
+    let noise_sd = noise_sd(source, kind, file)?;
     Ok(ChannelPlan {
         table: kind.table,
         line: place_at(source, &column.span()).line,
@@ -142,6 +143,7 @@ pub fn channel_plan(
         delay,
         scale_sd,
         delay_sd,
+        noise_sd,
     })
 }
 
@@ -308,6 +310,24 @@ fn delay(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<(f64, f
         _ => optional_quantity(source, value, &needed)?.map(|delay| (delay, 0.0)),
     };
     Ok(known.unwrap_or_default())
+}
+
+/// Standard deviation of the noise of a sample; SI.
+fn noise_sd(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<Option<f64>, Error> {
+    let needed = Needed {
+        table: kind.table,
+        key: "noise_sd",
+        meaning: "standard deviation of the noise of a sample",
+        unit: kind.unit,
+        example: "noise_sd = \"0.2 N\"",
+    };
+    match &file.noise_sd {
+        Some(value) if kind.unit.is_empty() => {
+            let problem = "counts have the noise of a count, which is known; remove the line";
+            Err(refused(source, value, (kind.table, needed.key), problem))
+        }
+        value => positive_quantity(source, value.as_ref(), &needed),
+    }
 }
 
 fn sign(source: &TomlSource, kind: &Kind, file: &ChannelFile) -> Result<f64, Error> {

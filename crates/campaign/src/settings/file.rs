@@ -4,6 +4,7 @@
 //! `campaign` turns it into what the program works with.
 
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use toml::Spanned;
 use windfall_cards::user_laws::file::LawsFile;
 pub use windfall_files::text::file_quantity::QuantityText;
@@ -183,6 +184,8 @@ pub struct ChannelFile {
     pub time: Option<Spanned<String>>,
     /// By how much the channel shows an event later than the clock says.
     pub delay: Option<Spanned<QuantityText>>,
+    /// Standard deviation of its noise, sample by sample, in place of what recordings show.
+    pub noise_sd: Option<Spanned<QuantityText>>,
     /// Cut-off of a zero-phase low-pass filter.
     pub low_pass: Option<Spanned<QuantityText>>,
     /// Cut-off of a zero-phase high-pass filter.
@@ -264,6 +267,12 @@ pub struct FitFile {
     pub laws: Option<Vec<Spanned<String>>>,
     /// Parameters that are estimated although they have a value.
     pub free: Option<Vec<Spanned<String>>>,
+    /// What is known of parameters before the data: "2.4e5 ± 0.3e5 N/m^1.5".
+    #[serde(default)]
+    pub prior: BTreeMap<String, Spanned<QuantityText>>,
+    /// Values outside of which parameters are not searched: "0 … 50 N s/m".
+    #[serde(default)]
+    pub bounds: BTreeMap<String, Spanned<QuantityText>>,
     /// Quantities of the bench that are estimated over all impacts.
     pub estimate: Option<Vec<Spanned<String>>>,
     /// Quantities in the cost function.

@@ -1,7 +1,8 @@
 //! `[fit]` of campaign.toml.
 
-use crate::settings::file::FitFile;
-use crate::settings::model::FitPlan;
+use crate::settings::file::{FitFile, QuantityText};
+use crate::settings::known::known_of;
+use crate::settings::model::{FitPlan, KnownKind, KnownText};
 use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
@@ -12,7 +13,7 @@ use windfall_files::text::toml_source::{
 };
 use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
 use windfall_identify::fit::problem::{FitOptions, NoiseModel, Quantities, Treatment, Weighting};
-use windfall_identify::samples::Quantity;
+use windfall_identify::samples::{QUANTITIES, Quantity};
 use windfall_numerics::unit::quantity::parse_as;
 
 const TABLE: &str = "[fit]";
@@ -52,11 +53,17 @@ pub const TREATMENTS: [(&str, Treatment); 3] = [
 
 /// What a campaign fits.
 ///
+/// * `noise_sd`: noise that channels are given
 /// * `user`: the user's own laws
 ///
 /// # Errors
 /// No law is named, or a word is not known.
-pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Result<FitPlan, Error> {
+pub fn fit_plan(
+    source: &TomlSource,
+    file: &FitFile,
+    noise_sd: [Option<f64>; QUANTITIES],
+    user: Vec<LawKind>,
+) -> Result<FitPlan, Error> {
     let keys = LawKeys {
         law: file.law.as_ref(),
         laws: file.laws.as_deref(),
@@ -70,6 +77,10 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Resu
     }
     let weights = choice(source, file.weights.as_ref(), (TABLE, "weights"), &WEIGHTS)?;
     options.weighting = weights.unwrap_or(options.weighting);
+    options.noise_sd = noise_sd;
+    if let (Some(word), Err(problem)) = (&file.weights, noise_counts(&options)) {
+        return Err(refused(source, word, (TABLE, "weights"), problem));
+    }
     let noise = choice(source, file.noise.as_ref(), (TABLE, "noise"), &NOISES)?;
     options.noise = noise.unwrap_or(options.noise);
     interval_options(source, file, &mut options.intervals)?;
@@ -86,12 +97,51 @@ pub fn fit_plan(source: &TomlSource, file: &FitFile, user: Vec<LawKind>) -> Resu
     options.onset = treatment(file.onset.as_ref(), "onset")?;
     options.displacement_offset =
         treatment(file.displacement_offset.as_ref(), "displacement_offset")?;
-    Ok(FitPlan {
+    let mut plan = FitPlan {
         laws,
         free,
+        known_texts: Vec::new(),
+        known: Vec::new(),
         user,
         options,
-    })
+    };
+    known(source, file, &mut plan)?;
+    Ok(plan)
+}
+
+/// Whether noise that is given can weigh in the cost.
+///
+/// # Errors
+/// Why it cannot.
+pub fn noise_counts(options: &FitOptions) -> Result<(), String> {
+    let given = options.noise_sd.iter().any(Option::is_some);
+    match options.weighting == Weighting::InverseMean && given {
+        true => Err(
+            "these weights know no noise, and a channel is given one (noise_sd): remove \
+                     one of the two"
+                .to_owned(),
+        ),
+        false => Ok(()),
+    }
+}
+
+/// Priors and bounds.
+fn known(source: &TomlSource, file: &FitFile, plan: &mut FitPlan) -> Result<(), Error> {
+    let priors = file.prior.iter().map(|own| (KnownKind::Prior, own));
+    let bounds = file.bounds.iter().map(|own| (KnownKind::Bounds, own));
+    let all: Vec<_> = priors.chain(bounds).collect();
+    let text = |(kind, (name, text)): &(KnownKind, (&String, &Spanned<QuantityText>))| KnownText {
+        kind: *kind,
+        name: (*name).clone(),
+        text: text.get_ref().0.clone(),
+    };
+    plan.known_texts = all.iter().map(text).collect();
+    plan.known = known_of(plan).map_err(|(index, problem)| {
+        let (kind, (name, text)) = all[index];
+        let table = format!("[fit.{}]", kind.name());
+        refused(source, text, (&table, name), problem)
+    })?;
+    Ok(())
 }
 
 /// Fewest replicates, draws and chains that an interval can be read from.

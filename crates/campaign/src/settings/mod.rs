@@ -9,6 +9,7 @@ pub mod file;
 pub mod files;
 pub mod fit;
 pub mod kind;
+pub mod known;
 pub mod model;
 pub mod open_options;
 pub mod read;

@@ -1,11 +1,13 @@
 //! A campaign: channels, specimens, entries, and of impacts rig and options, in SI units.
 
 use crate::settings::kind::CampaignKind;
+use serde::Serialize;
 use std::path::PathBuf;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
+use windfall_files::found::FindingOutcome;
 use windfall_formats::open::OpenOptions;
-use windfall_identify::fit::problem::FitOptions;
+use windfall_identify::fit::problem::{FitOptions, Known};
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_identify::rig::kind::Pendulum;
 use windfall_signal::ExtractOptions;
@@ -178,6 +180,8 @@ pub struct ChannelPlan {
     pub scale_sd: f64,
     /// Standard uncertainty of the delay; s.
     pub delay_sd: f64,
+    /// Standard deviation of the noise of a sample, where it is given; SI.
+    pub noise_sd: Option<f64>,
 }
 
 /// What is fitted.
@@ -187,10 +191,69 @@ pub struct FitPlan {
     pub laws: Vec<LawExpression>,
     /// Names of parameters that are estimated although they have a value.
     pub free: Vec<String>,
+    /// Priors and bounds, as they were written.
+    pub known_texts: Vec<KnownText>,
+    /// What they say of the parameters and nuisances of each law.
+    pub known: Vec<(LawKind, Known)>,
     /// The user's own laws, by which laws can be named.
     pub user: Vec<LawKind>,
     /// Cost function and treatment of the nuisance parameters.
     pub options: FitOptions,
+}
+
+/// Which of the two things can be known of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum KnownKind {
+    /// "2.4e5 ± 0.3e5 N/m^1.5"
+    Prior,
+    /// "0 … 50 N s/m"
+    Bounds,
+}
+
+impl KnownKind {
+    /// Its key below `[fit]`, and its option without dashes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Prior => "prior",
+            Self::Bounds => "bounds",
+        }
+    }
+}
+
+/// What is known of a parameter, as it was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct KnownText {
+    /// Which of the two.
+    pub kind: KnownKind,
+    /// The parameter.
+    pub name: String,
+    /// The quantity.
+    pub text: String,
+}
+
+impl FitPlan {
+    /// Takes out priors, which are of fits of single impacts; a finding that says so, if there
+    /// were any.
+    pub fn without_priors(&mut self) -> Option<FindingOutcome> {
+        let is_prior = |own: &KnownText| own.kind == KnownKind::Prior;
+        let (priors, bounds) = std::mem::take(&mut self.known_texts)
+            .into_iter()
+            .partition(is_prior);
+        self.known_texts = bounds;
+        self.known
+            .iter_mut()
+            .for_each(|(_, known)| known.prior = None);
+        let priors: Vec<String> = priors.into_iter().map(|own: KnownText| own.name).collect();
+        (!priors.is_empty()).then(|| {
+            let told = format!(
+                "the priors of {} take no part: they are of fits of single impacts, and here each \
+                 would count as often as there are impacts",
+                priors.join(", ")
+            );
+            FindingOutcome::new("priors-not-used", told)
+        })
+    }
 }
 
 /// One row of specimens.csv.

@@ -7,7 +7,7 @@ use crate::settings::file::CampaignFile;
 use crate::settings::files::check_format;
 use crate::settings::fit::fit_plan;
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind};
-use crate::settings::model::ImpactCampaign;
+use crate::settings::model::{ChannelPlan, ImpactCampaign, RigPlan};
 use crate::settings::response::response_plan;
 use crate::settings::rig::rig_plan;
 use crate::settings::shared::read_shared;
@@ -15,6 +15,8 @@ use std::path::Path;
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{parse_source, read_source};
+use windfall_identify::samples::{QUANTITIES, Quantity};
+use windfall_signal::recording::Quantity as Recorded;
 
 /// Reads a campaign directory.
 ///
@@ -37,7 +39,8 @@ pub fn read_campaign(directory: &Path) -> Result<ImpactCampaign, Error> {
     contact.response = response;
     let bench = bench_plan(&source, &file, (&rig, sd), &channels)?;
     let user = user_laws(&source, &file.laws, directory)?;
-    let mut fit = fit_plan(&source, &file.fit, user)?;
+    let noise_sd = noise_of_quantities(&rig, &channels);
+    let mut fit = fit_plan(&source, &file.fit, noise_sd, user)?;
     fit.options.response = response;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Impacts;
@@ -49,4 +52,25 @@ pub fn read_campaign(directory: &Path) -> Result<ImpactCampaign, Error> {
         fit,
         covariates: file.population.covariates,
     })
+}
+
+/// The noise that channels are given, as that of the quantities that are fitted; SI.
+fn noise_of_quantities(rig: &RigPlan, channels: &[ChannelPlan]) -> [Option<f64>; QUANTITIES] {
+    let mut all = [None; QUANTITIES];
+    for channel in channels {
+        let own = match channel.quantity {
+            Recorded::Displacement | Recorded::Angle => Quantity::Displacement,
+            Recorded::Rate => Quantity::Rate,
+            Recorded::Force => Quantity::Force,
+            Recorded::Acceleration => Quantity::Acceleration,
+            _ => continue,
+        };
+        let arm = match (channel.quantity, rig) {
+            (Recorded::Angle, RigPlan::Pendulum(pendulum)) => pendulum.arm,
+            _ => 1.0,
+        };
+        let found = channel.noise_sd.map(|sd| arm * sd);
+        all[own as usize] = found.or(all[own as usize]);
+    }
+    all
 }

@@ -6,7 +6,7 @@ use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind, STORE_FILE};
 use crate::settings::model::{Campaign, ChannelPlan};
 use crate::settings::tables::{read_impacts, read_specimens};
 use std::path::Path;
-use windfall_files::error::Error;
+use windfall_files::error::{Error, Place};
 use windfall_files::inputs::{protect, protect_campaign};
 use windfall_files::text::toml_source::TomlSource;
 use windfall_files::write_file::sweep;
@@ -35,6 +35,18 @@ pub fn read_shared(
     (titles, files, summary): SharedFile,
     channels: Vec<ChannelPlan>,
 ) -> Result<Campaign, Error> {
+    let noisy = channels.iter().find(|own| own.noise_sd.is_some());
+    if let (Some(channel), true) = (noisy, kind != CampaignKind::Impacts) {
+        return Err(Error::ValueInvalid {
+            place: Place {
+                file: source.path.clone(),
+                line: channel.line,
+            },
+            key: format!("{} noise_sd", channel.table),
+            text: channel.column.clone(),
+            problem: "noise is given for impacts only; remove the line".to_owned(),
+        });
+    }
     let files = file_plan(source, directory, files, channels)?;
     protect(&directory.join(STORE_FILE));
     for folder in [directory, &files.directory] {

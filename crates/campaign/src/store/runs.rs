@@ -8,7 +8,8 @@
 use crate::recording::digests::RunOrigin;
 use crate::result::outcome::ImpactOutcome;
 use crate::store::documents::{
-    DocumentRecord, document_digest, document_keys, find_documents, insert_document, mend_document,
+    DocumentRecord, document_digest, document_keys, find_documents, insert_document,
+    insert_document_of_run, mend_document,
 };
 use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
@@ -103,8 +104,23 @@ pub fn count_runs(path: &Path) -> Result<usize, Error> {
 /// The file is damaged, foreign, newer, or cannot be written; then it is as it
 /// was before.
 pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
+    write(path, &|transaction| insert_run(transaction, run))
+}
+
+/// Adds a document that belongs to no run, in one transaction.
+///
+/// # Errors
+/// Those of [`write_run`].
+pub fn write_document(path: &Path, record: &DocumentRecord) -> Result<(), Error> {
+    write(path, &|transaction| insert_document(transaction, record))
+}
+
+/// What a transaction adds.
+type Fill<'a> = dyn Fn(&Transaction) -> rusqlite::Result<()> + 'a;
+
+fn write(path: &Path, fill: &Fill) -> Result<(), Error> {
     let new = !path.exists();
-    let written = write_into(path, run);
+    let written = write_into(path, fill);
     // What a full disk leaves of a new store holds nothing.
     if written.is_err() && new && path.metadata().is_ok_and(|own| own.len() == 0) {
         discard(path);
@@ -112,7 +128,7 @@ pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
     written
 }
 
-fn write_into(path: &Path, run: &RunRecord) -> Result<(), Error> {
+fn write_into(path: &Path, fill: &Fill) -> Result<(), Error> {
     let failed = |source| store_error(path, "write", source);
     drop(open_existing(path)?);
     let mut connection = Connection::open(path).map_err(failed)?;
@@ -131,7 +147,7 @@ fn write_into(path: &Path, run: &RunRecord) -> Result<(), Error> {
         .transaction_with_behavior(rusqlite::TransactionBehavior::Immediate)
         .map_err(failed)?;
     create_schema(&transaction).map_err(failed)?;
-    insert_run(&transaction, run).map_err(failed)?;
+    fill(&transaction).map_err(failed)?;
     transaction.commit().map_err(failed)
 }
 
@@ -155,7 +171,7 @@ fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()
         )?;
     }
     for (position, document) in run.documents.iter().enumerate() {
-        insert_document(transaction, id, position, document)?;
+        insert_document_of_run(transaction, id, position, document)?;
     }
     for (position, failure) in run.failures.iter().enumerate() {
         transaction.execute(

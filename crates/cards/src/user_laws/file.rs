@@ -22,6 +22,9 @@ pub struct OnlyLaws {
 pub struct LawFile {
     /// Formula of the force in x (m), v (m/s) and the parameters; N.
     pub force: Option<Spanned<String>>,
+    /// Formula below the largest displacement so far, in x, v, x_max (m), F_max (N) and the
+    /// parameters; N.
+    pub unloading: Option<Spanned<String>>,
     /// CSV file with the columns displacement_m, force_N and, optionally,
     /// damping_N_s_m.
     pub table: Option<Spanned<String>>,

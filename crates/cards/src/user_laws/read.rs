@@ -3,6 +3,7 @@
 use crate::user_laws::file::{LawFile, LawParameterFile, LawsFile, OnlyLaws};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
+use windfall_contact::formula::error::FormulaError;
 use windfall_contact::laws::define_law::define_law;
 use windfall_contact::laws::force_table::{COLUMNS, ForceTable};
 use windfall_contact::laws::kind::LawKind;
@@ -73,7 +74,17 @@ fn user_law(
     let inline = law.displacement.is_some() || law.table_force.is_some();
     let mut lines = None;
     let (force, key) = match (&law.force, &law.table, inline) {
-        (Some(formula), None, false) => (UserForce::Formula(formula.get_ref().clone()), "force"),
+        (Some(formula), None, false) => {
+            let force = formula.get_ref().clone();
+            let own = match &law.unloading {
+                None => UserForce::Formula(force),
+                Some(unloading) => UserForce::WithMemory {
+                    force,
+                    unloading: unloading.get_ref().clone(),
+                },
+            };
+            (own, "force")
+        }
         (None, Some(file), false) => {
             let (own, found) = read_table(source, &table, file, directory)?;
             lines = Some(found);
@@ -98,6 +109,17 @@ fn user_law(
             return Err(wrong("force", problem.to_owned()));
         }
     };
+    if let (Some(unloading), true) = (&law.unloading, key != "force") {
+        let problem = "unloading belongs to a formula `force`; a table has no memory".to_owned();
+        let key = (table.as_str(), "unloading");
+        return Err(invalid(
+            source,
+            &unloading.span(),
+            key,
+            unloading.get_ref(),
+            problem,
+        ));
+    }
     if key == "table" && !law.parameters.is_empty() {
         let problem = "a table has the parameters scale and damping_scale and no others";
         return Err(wrong("parameters", problem.to_owned()));
@@ -130,6 +152,10 @@ fn placed(
     let problem = error.to_string();
     let windfall_contact::error::Error::UserLaw { problem: of, .. } = error else {
         return invalid_at(source, &["laws", law, key], problem);
+    };
+    let key = match **of {
+        FormulaError::Unloading(_) => "unloading",
+        _ => key,
     };
     match (of.parameter(), of.cell(), lines) {
         (Some((parameter, "")), ..) => {

@@ -19,6 +19,10 @@ pub fn law_table(kind: LawKind) -> String {
         UserForce::Formula(formula) => {
             let _ = writeln!(text, "force = {}", string_text(formula));
         }
+        UserForce::WithMemory { force, unloading } => {
+            let _ = writeln!(text, "force = {}", string_text(force));
+            let _ = writeln!(text, "unloading = {}", string_text(unloading));
+        }
         UserForce::Table(table) => {
             let _ = writeln!(text, "displacement_m = {:?}", table.displacement);
             let _ = writeln!(text, "force_N = {:?}", table.force);

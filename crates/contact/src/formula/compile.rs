@@ -4,8 +4,8 @@
 use crate::formula::error::FormulaError;
 use crate::formula::graph::{Graph, Id, Node};
 use crate::formula::program::{
-    CONSTANTS, DISPLACEMENT, FEW_REGISTERS, FIRST_CONSTANT, Instruction, Operation, Program, RATE,
-    REGISTERS,
+    CONSTANTS, DISPLACEMENT, FEW_REGISTERS, FIRST_CONSTANT, Instruction, Operation, PEAK, Program,
+    RATE, REGISTERS,
 };
 
 /// The program of a law's force and derivatives, with the program of the
@@ -41,6 +41,9 @@ pub(crate) fn compile(
     })
 }
 
+/// Values that are given: x, v and the largest x so far.
+const GIVEN: usize = 3;
+
 /// A value that is computed, before registers are given out.
 type Value = usize;
 
@@ -57,7 +60,7 @@ struct Lowering<'a> {
     /// Constants that may be hoisted, and those that are.
     room: usize,
     hoisted: Vec<Id>,
-    /// Operation and operands of each value; values 0 and 1 are x and v.
+    /// Operation and operands of each value; the first are x, v and the largest x so far.
     steps: Vec<(Operation, [Option<Place>; 3])>,
     literals: Vec<f64>,
     places: Vec<Option<Place>>,
@@ -70,7 +73,7 @@ impl<'a> Lowering<'a> {
             parameters,
             room,
             hoisted: Vec::new(),
-            steps: vec![(Operation::Constant, [None; 3]); 2],
+            steps: vec![(Operation::Constant, [None; 3]); GIVEN],
             literals: Vec::new(),
             places: vec![None; graph.nodes.len()],
         }
@@ -95,9 +98,9 @@ impl<'a> Lowering<'a> {
         for (cell, operand) in padded.iter_mut().zip(operands) {
             *cell = Some(*operand);
         }
-        let mut known = self.steps[2..].iter();
+        let mut known = self.steps[GIVEN..].iter();
         if let Some(known) = known.position(|step| *step == (operation, padded)) {
-            return Place::Value(known + 2);
+            return Place::Value(known + GIVEN);
         }
         self.steps.push((operation, padded));
         Place::Value(self.steps.len() - 1)
@@ -129,6 +132,7 @@ impl<'a> Lowering<'a> {
         match self.graph.nodes[id] {
             Node::Displacement => Place::Value(0),
             Node::Rate => Place::Value(1),
+            Node::Peak => Place::Value(2),
             Node::Parameter(index) => Place::Constant(index as u8),
             Node::Number(bits) => {
                 let value = f64::from_bits(bits);
@@ -276,11 +280,11 @@ impl<'a> Lowering<'a> {
         if self.literals.len() > usize::from(u8::MAX) {
             return Err(too_long);
         }
-        // x and v begin in the first two registers.
-        let mut registers: Vec<u8> = vec![DISPLACEMENT, RATE];
-        let mut holder: Vec<Option<Value>> = vec![Some(0), Some(1)];
+        // x, v and the largest x so far begin in the first registers.
+        let mut registers: Vec<u8> = vec![DISPLACEMENT, RATE, PEAK];
+        let mut holder: Vec<Option<Value>> = (0..GIVEN).map(Some).collect();
         let mut instructions = Vec::new();
-        for (index, (operation, operands)) in self.steps.iter().enumerate().skip(2) {
+        for (index, (operation, operands)) in self.steps.iter().enumerate().skip(GIVEN) {
             let code = |operand: Option<Place>, registers: &[u8]| match operand {
                 None => 0,
                 Some(Place::Value(value)) => registers[value],

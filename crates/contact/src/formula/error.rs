@@ -238,6 +238,43 @@ pub enum FormulaError {
         /// Values of the parameters, as text.
         values: String,
     },
+    /// The force jumps after a change of what the contact remembers.
+    #[error(
+        "the force jumps from {below:.6e} N to {above:.6e} N at x = {displacement:.6e} m, v = {rate} m/s after a largest displacement x_max = {peak:.6e} m, {change} ({values})"
+    )]
+    StateJumps {
+        /// Force on one side; N.
+        below: f64,
+        /// Force on the other; N.
+        above: f64,
+        /// Displacement; m.
+        displacement: f64,
+        /// Rate; m/s.
+        rate: f64,
+        /// Largest displacement; m.
+        peak: f64,
+        /// What changes there, and what to do.
+        change: &'static str,
+        /// Values of the parameters, as text.
+        values: String,
+    },
+    /// Unloading, or a derivative of it, has no value.
+    #[error(
+        "the force or one of its derivatives is not finite at x = {displacement:.6e} m, v = {rate} m/s after a largest displacement x_max = {peak:.6e} m ({values}): every displacement from 0 to x_max needs a value, also beyond the end of the contact; write (x - d)*sqrt(abs(x - d)) for (x - d)^1.5"
+    )]
+    UndefinedUnloading {
+        /// Displacement; m.
+        displacement: f64,
+        /// Rate; m/s.
+        rate: f64,
+        /// Largest displacement; m.
+        peak: f64,
+        /// Values of the parameters, as text.
+        values: String,
+    },
+    /// What is wrong with the formula of unloading.
+    #[error("unloading: {0}")]
+    Unloading(Box<FormulaError>),
     /// A table that cannot be used.
     #[error("{}the table: {reason}", of_row(*row))]
     Table {
@@ -264,6 +301,7 @@ impl FormulaError {
             Self::StartOutOfBounds {
                 parameter, what, ..
             } => Some((parameter, what)),
+            Self::Unloading(inner) => inner.parameter(),
             // An upper bound that is left out is above all others.
             Self::EmptyBounds { parameter, .. } => Some((parameter, "upper")),
             _ => None,

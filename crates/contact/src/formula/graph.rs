@@ -14,6 +14,8 @@ pub(crate) enum Node {
     Number(u64),
     Displacement,
     Rate,
+    /// Largest displacement so far, 0 during first loading.
+    Peak,
     Parameter(usize),
     Sum(Id, Id),
     Difference(Id, Id),
@@ -32,6 +34,8 @@ pub(crate) struct Graph {
     pub nodes: Vec<Node>,
     /// Whether the node depends on parameters and numbers only.
     pub invariant: Vec<bool>,
+    /// Force at rest at the largest displacement so far.
+    peak_force: Option<Id>,
     known: BTreeMap<Node, Id>,
 }
 
@@ -40,6 +44,7 @@ pub(crate) struct Graph {
 pub(crate) enum Variable {
     Displacement,
     Rate,
+    Peak,
     Parameter(usize),
 }
 
@@ -49,7 +54,7 @@ impl Graph {
             return *id;
         }
         let invariant = match node {
-            Node::Displacement | Node::Rate => false,
+            Node::Displacement | Node::Rate | Node::Peak => false,
             _ => parts(node)
                 .into_iter()
                 .flatten()
@@ -213,6 +218,9 @@ impl Graph {
             What::Number(value) => self.number(*value),
             What::Displacement => self.insert(Node::Displacement),
             What::Rate => self.insert(Node::Rate),
+            What::Peak => self.insert(Node::Peak),
+            // Not a number in a formula without memory, which cannot name it.
+            What::PeakForce => self.peak_force.unwrap_or_else(|| self.number(f64::NAN)),
             What::Parameter(index) => self.insert(Node::Parameter(*index)),
             What::Negative(a) => {
                 let a = self.add(a);
@@ -265,12 +273,82 @@ impl Graph {
         }
     }
 
+    /// The force of a law with memory: `unloading` below the largest displacement so far, and
+    /// `loading` beyond it. Returns the node of unloading, and that of the force.
+    pub(crate) fn remembering(&mut self, loading: Id, unloading: &Term) -> (Id, Id) {
+        let mut done = vec![None; loading + 1];
+        self.peak_force = Some(self.at_rest_at_peak(loading, &mut done));
+        let unloading = self.add(unloading);
+        let (peak, x) = (self.insert(Node::Peak), self.insert(Node::Displacement));
+        let below = self.difference(peak, x);
+        (unloading, self.choice(below, unloading, loading))
+    }
+
+    /// Whether a condition is that of [`remembering`](Self::remembering).
+    pub(crate) fn is_memory(&self, condition: Id) -> bool {
+        match self.nodes[condition] {
+            Node::Difference(a, b) => {
+                (self.nodes[a], self.nodes[b]) == (Node::Peak, Node::Displacement)
+            }
+            _ => false,
+        }
+    }
+
+    /// A node with the largest displacement in the place of x, and no rate.
+    fn at_rest_at_peak(&mut self, id: Id, done: &mut Vec<Option<Id>>) -> Id {
+        if let Some(known) = done[id] {
+            return known;
+        }
+        let mut of = |graph: &mut Self, id: Id| graph.at_rest_at_peak(id, done);
+        let out = match self.nodes[id] {
+            Node::Displacement | Node::Peak => self.insert(Node::Peak),
+            Node::Rate => self.number(0.0),
+            Node::Number(_) | Node::Parameter(_) => id,
+            Node::Sum(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.sum(a, b)
+            }
+            Node::Difference(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.difference(a, b)
+            }
+            Node::Product(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.product(a, b)
+            }
+            Node::Quotient(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.quotient(a, b)
+            }
+            Node::Power(a, b) => {
+                let (a, b) = (of(self, a), of(self, b));
+                self.power(a, b)
+            }
+            Node::Negative(a) => {
+                let a = of(self, a);
+                self.negative(a)
+            }
+            Node::Call(function, a) => {
+                let a = of(self, a);
+                self.call(function, a)
+            }
+            Node::Choice(c, a, b) => {
+                let (c, a, b) = (of(self, c), of(self, a), of(self, b));
+                self.choice(c, a, b)
+            }
+        };
+        done[id] = Some(out);
+        out
+    }
+
     /// Whether a node depends on a variable.
     pub(crate) fn depends(&self, id: Id, by: Variable) -> bool {
         let mut known: Vec<bool> = Vec::with_capacity(id + 1);
         for node in &self.nodes[..=id] {
             let own = match (*node, by) {
-                (Node::Displacement, Variable::Displacement) | (Node::Rate, Variable::Rate) => true,
+                (Node::Displacement, Variable::Displacement)
+                | (Node::Rate, Variable::Rate)
+                | (Node::Peak, Variable::Peak) => true,
                 (Node::Parameter(index), Variable::Parameter(other)) => index == other,
                 _ => false,
             };
@@ -294,6 +372,7 @@ impl Graph {
             Node::Number(_) => self.number(0.0),
             Node::Displacement => self.number(f64::from(u8::from(by == Variable::Displacement))),
             Node::Rate => self.number(f64::from(u8::from(by == Variable::Rate))),
+            Node::Peak => self.number(f64::from(u8::from(by == Variable::Peak))),
             Node::Parameter(i) => self.number(f64::from(u8::from(by == Variable::Parameter(i)))),
             Node::Sum(a, b) => {
                 let (da, db) = (self.slope(a, by, done), self.slope(b, by, done));
@@ -390,7 +469,9 @@ impl Graph {
 /// Nodes that a node is made of.
 pub(crate) fn parts(node: Node) -> [Option<Id>; 3] {
     match node {
-        Node::Number(_) | Node::Displacement | Node::Rate | Node::Parameter(_) => [None; 3],
+        Node::Number(_) | Node::Displacement | Node::Rate | Node::Peak | Node::Parameter(_) => {
+            [None; 3]
+        }
         Node::Sum(a, b)
         | Node::Difference(a, b)
         | Node::Product(a, b)

@@ -12,9 +12,10 @@ pub(crate) const FEW_REGISTERS: usize = 16;
 pub(crate) const REGISTERS: usize = 64;
 /// Operands from here on are constants.
 pub(crate) const FIRST_CONSTANT: u8 = 128;
-/// Registers that hold x and v at the start.
+/// Registers that hold x, v and the largest x so far at the start.
 pub(crate) const DISPLACEMENT: u8 = 0;
 pub(crate) const RATE: u8 = 1;
+pub(crate) const PEAK: u8 = 2;
 
 /// What an instruction does with a (and b, c); registers unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -69,17 +70,19 @@ pub(crate) struct Program {
 }
 
 impl Program {
-    /// Values of the outputs at displacement `x` and rate `v`.
+    /// Values of the outputs at displacement, rate and largest displacement so far.
     #[inline(always)]
     pub(crate) fn evaluate<R: Real, const OUT: usize>(
         &self,
         constants: &[f64; CONSTANTS],
-        x: R,
-        v: R,
+        state: [R; 3],
     ) -> [R; OUT] {
         match self.few {
-            true => self.run::<R, OUT, FEW_REGISTERS>(constants, x, v),
-            false => x.with_each_plain(self.run_long(constants, x.plain(), v.plain())),
+            true => self.run::<R, OUT, FEW_REGISTERS>(constants, state),
+            false => {
+                let plain = state[0].each_plain(state);
+                state[0].with_each_plain(self.run_long(constants, plain))
+            }
         }
     }
 
@@ -87,22 +90,22 @@ impl Program {
     fn run_long<R: Real, const OUT: usize>(
         &self,
         constants: &[f64; CONSTANTS],
-        x: R,
-        v: R,
+        state: [R; 3],
     ) -> [R; OUT] {
-        self.run::<R, OUT, REGISTERS>(constants, x, v)
+        self.run::<R, OUT, REGISTERS>(constants, state)
     }
 
     #[inline(always)]
     fn run<R: Real, const OUT: usize, const SIZE: usize>(
         &self,
         constants: &[f64; CONSTANTS],
-        x: R,
-        v: R,
+        state: [R; 3],
     ) -> [R; OUT] {
+        let [x, v, peak] = state;
         let mut registers = [x.constant(0.0); SIZE];
         registers[DISPLACEMENT as usize] = x;
         registers[RATE as usize] = v;
+        registers[PEAK as usize] = peak;
         for instruction in &self.instructions {
             let Instruction {
                 operation,

@@ -37,6 +37,9 @@ const FUNCTIONS: [(&str, Function); 10] = [
 /// Names of functions of more than one argument.
 const OTHERS: [&str; 3] = ["min", "max", "if"];
 
+/// Names of what a contact remembers.
+pub(crate) const REMEMBERED: [&str; 2] = ["x_max", "F_max"];
+
 /// Whether a parameter may not have this name.
 pub(crate) fn is_reserved(name: &str) -> bool {
     let functions = FUNCTIONS.iter().map(|(name, _)| *name);
@@ -68,6 +71,10 @@ pub(crate) enum What {
     Number(f64),
     Displacement,
     Rate,
+    /// Largest displacement so far.
+    Peak,
+    /// Force at rest at the largest displacement so far.
+    PeakForce,
     Parameter(usize),
     Negative(Box<Term>),
     Binary(Operator, Box<Term>, Box<Term>),
@@ -86,10 +93,20 @@ pub(crate) enum What {
 
 /// Reads a formula; `F =` before it is accepted.
 pub(crate) fn parse_formula(text: &str, parameters: &[String]) -> Result<Term, FormulaError> {
+    parse(text, parameters, false)
+}
+
+/// Reads the formula of unloading, which may name what the contact remembers.
+pub(crate) fn parse_unloading(text: &str, parameters: &[String]) -> Result<Term, FormulaError> {
+    parse(text, parameters, true)
+}
+
+fn parse(text: &str, parameters: &[String], memory: bool) -> Result<Term, FormulaError> {
     let mut cursor = Cursor {
         text,
         at: 0,
         parameters,
+        memory,
         depth: 0,
     };
     cursor.skip_left_side();
@@ -105,6 +122,8 @@ struct Cursor<'a> {
     text: &'a str,
     at: usize,
     parameters: &'a [String],
+    /// Whether [`REMEMBERED`] are known.
+    memory: bool,
     depth: usize,
 }
 
@@ -276,6 +295,8 @@ impl<'a> Cursor<'a> {
             "x" => What::Displacement,
             "v" => What::Rate,
             "pi" => What::Number(std::f64::consts::PI),
+            "x_max" if self.memory => What::Peak,
+            "F_max" if self.memory => What::PeakForce,
             _ => match parameter {
                 Some(index) => What::Parameter(index),
                 None => return Err(self.unknown(name, start)),
@@ -287,8 +308,10 @@ impl<'a> Cursor<'a> {
 
     fn unknown(&self, name: &str, start: usize) -> FormulaError {
         let functions = FUNCTIONS.iter().map(|(name, _)| *name).chain(OTHERS);
+        let remembered = REMEMBERED.iter().filter(|_| self.memory);
         let known: Vec<&str> = ["x", "v", "pi"]
             .into_iter()
+            .chain(remembered.copied())
             .chain(self.parameters.iter().map(String::as_str))
             .chain(functions)
             .collect();

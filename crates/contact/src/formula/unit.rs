@@ -123,7 +123,8 @@ impl Units<'_> {
         Ok(match &term.what {
             What::Number(0.0) => None,
             What::Number(_) => plain,
-            What::Displacement => Some(dimension(&[(METRE, 1.0)])),
+            What::Displacement | What::Peak => Some(dimension(&[(METRE, 1.0)])),
+            What::PeakForce => Some(newton()),
             What::Rate => Some(dimension(&[(METRE, 1.0), (SECOND, -1.0)])),
             What::Parameter(index) => Some(self.dimensions[*index]),
             What::Negative(a) | What::Call(Function::Abs, a) => self.of(a)?,
@@ -207,7 +208,7 @@ impl Units<'_> {
 /// Whether a term contains x or v.
 fn varies(term: &Term) -> bool {
     match &term.what {
-        What::Displacement | What::Rate => true,
+        What::Displacement | What::Rate | What::Peak | What::PeakForce => true,
         What::Number(_) | What::Parameter(_) => false,
         What::Negative(a) | What::Call(_, a) => varies(a),
         What::Binary(_, a, b) | What::Smaller(a, b) | What::Larger(a, b) => varies(a) || varies(b),

@@ -10,6 +10,8 @@ pub(crate) fn term_value(term: &Term, parameters: &[f64], x: f64, v: f64) -> f64
         What::Number(value) => *value,
         What::Displacement => x,
         What::Rate => v,
+        // Only in `unloading`, whose terms are not looked at one by one.
+        What::Peak | What::PeakForce => f64::NAN,
         What::Parameter(index) => parameters[*index],
         What::Negative(a) => -of(a),
         What::Binary(operator, a, b) => {
@@ -59,7 +61,12 @@ pub(crate) fn culprit<'a>(
     let inner = |term: &'a Term| culprit(term, parameters, x, v);
     let of = |term: &Term| term_value(term, parameters, x, v);
     let found = match &term.what {
-        What::Number(_) | What::Displacement | What::Rate | What::Parameter(_) => None,
+        What::Number(_)
+        | What::Displacement
+        | What::Rate
+        | What::Peak
+        | What::PeakForce
+        | What::Parameter(_) => None,
         What::Negative(a) | What::Call(_, a) => inner(a),
         What::Binary(_, a, b) | What::Smaller(a, b) | What::Larger(a, b) => {
             inner(a).or_else(|| inner(b))
@@ -87,14 +94,23 @@ pub(crate) fn culprit<'a>(
     Some((term, reason))
 }
 
-/// Value of every node.
+/// Value of every node during first loading.
 pub(crate) fn node_values(graph: &Graph, parameters: &[f64], x: f64, v: f64) -> Vec<f64> {
+    values_after(graph, parameters, [x, v, 0.0])
+}
+
+/// Value of every node.
+///
+/// * `state`: displacement, rate and largest displacement so far; m, m/s, m
+pub(crate) fn values_after(graph: &Graph, parameters: &[f64], state: [f64; 3]) -> Vec<f64> {
+    let [x, v, peak] = state;
     let mut values: Vec<f64> = Vec::with_capacity(graph.nodes.len());
     for node in &graph.nodes {
         let value = match *node {
             Node::Number(bits) => f64::from_bits(bits),
             Node::Displacement => x,
             Node::Rate => v,
+            Node::Peak => peak,
             Node::Parameter(index) => parameters[index],
             Node::Sum(a, b) => values[a] + values[b],
             Node::Difference(a, b) => values[a] - values[b],

@@ -1,20 +1,21 @@
 //! A user's definition → a law like any other.
 
 use crate::error::Error;
-use crate::formula::compile::compile;
 use crate::formula::error::FormulaError;
-use crate::formula::graph::{Graph, Id, Node, Variable};
-use crate::formula::syntax::{Term, is_reserved, parse_formula};
+use crate::formula::graph::{Graph, Id, Variable};
+use crate::formula::syntax::{REMEMBERED, Term, is_reserved, parse_formula, parse_unloading};
 use crate::formula::unit::{Units, check_units, si_dimension};
 use crate::formula::value::node_values;
 use crate::laws::any_law_size::LARGEST_PARAMETERS;
 use crate::laws::force_table::{ForceTable, MonotoneCubic, check_table};
 use crate::laws::kind::LawKind;
 use crate::laws::user::{
-    Body, FormulaBody, Known, UserForce, UserKind, UserLawDefinition, UserParameter, start_power_of,
+    Body, Known, OUTPUTS, UserForce, UserKind, UserLawDefinition, UserParameter,
 };
+use crate::laws::user_body::formula_body;
 use crate::laws::user_check::{Looked, check_force};
 use crate::laws::user_finding::UserLawFinding;
+use crate::laws::user_memory_check::check_unloading;
 use crate::parameter::{Elastic, LawDescription, NO_BOUND, ParameterDescription, Power, parameter};
 use std::sync::{Mutex, PoisonError};
 use windfall_numerics::unit::quantity::Dimension;
@@ -81,7 +82,10 @@ fn make(definition: &UserLawDefinition, key: String) -> Result<Known, FormulaErr
     let name = law_name(&definition.name)?;
     match &definition.force {
         UserForce::Table(table) => make_table(definition, key, name, table),
-        UserForce::Formula(formula) => make_formula(definition, key, name, formula),
+        UserForce::Formula(formula) => make_formula(definition, key, name, (formula, None)),
+        UserForce::WithMemory { force, unloading } => {
+            make_formula(definition, key, name, (force, Some(unloading)))
+        }
     }
 }
 
@@ -197,14 +201,18 @@ fn make_formula(
     definition: &UserLawDefinition,
     key: String,
     name: String,
-    formula: &str,
+    (formula, unloading): (&str, Option<&String>),
 ) -> Result<Known, FormulaError> {
     let parameters = &definition.parameters;
     check_parameters(parameters)?;
     let names: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
     let term = parse_formula(formula, &names)?;
     let mut graph = Graph::default();
-    let force = graph.add(&term);
+    let loading = graph.add(&term);
+    let unloading = unloading
+        .map(|text| Unloading::new(&mut graph, loading, text, &names))
+        .transpose()?;
+    let force = unloading.as_ref().map_or(loading, |own| own.force);
     for (index, name) in names.iter().enumerate() {
         if !graph.depends(force, Variable::Parameter(index)) {
             return Err(FormulaError::UnusedParameter {
@@ -213,36 +221,36 @@ fn make_formula(
         }
     }
     let values: Vec<f64> = parameters.iter().map(usual).collect();
-    let descriptions: &'static [ParameterDescription] =
-        Box::leak(parameters.iter().map(described).collect());
-    // By their names alone, as the built-in laws have them.
-    let damping = ["c", "lambda"].into_iter().find_map(|usual| {
-        let named = |p: &&ParameterDescription| p.name.to_lowercase() == usual;
-        descriptions.iter().find(named)
-    });
-    let description = LawDescription {
-        name: leaked(name),
-        formula: leaked(formula.trim()),
-        first_touch: "as the formula says",
-        source: "the user's own formula",
-        elastic: Elastic::Other,
-        damping: damping.map(|p| (p.name, Power::Number(0.0))),
-        linear: &[],
-        from_compression: false,
-        parameters: descriptions,
-    };
+    let description = described_formula(parameters, name, formula, unloading.as_ref());
     let mut findings = unit_findings(&term, formula, &names, &description, &values)?;
-    let slopes = slopes(&mut graph, force, names.len());
-    findings.extend(check_force(&Looked {
+    let mut slopes = slopes(&mut graph, force, names.len());
+    let linear = linear(&graph, &slopes, names.len(), &values);
+    if let Some(own) = &unloading {
+        let units = unit_findings(&own.term, own.text, &names, &description, &values);
+        let new = units.map_err(|error| FormulaError::Unloading(Box::new(error)))?;
+        findings.extend(
+            new.into_iter()
+                .filter(|one| !findings.contains(one))
+                .collect::<Vec<_>>(),
+        );
+        slopes.resize_with(OUTPUTS - 2, || graph.number(0.0));
+        slopes.push(graph.derivative(force, Variable::Peak));
+    }
+    let looked = Looked {
         formula,
         term: &term,
         names: &names,
         graph: &graph,
-        force,
+        force: loading,
         slopes: &slopes,
         values: &values,
-    })?);
-    let (body, unlocated) = formula_body(&graph, force, &slopes, &values)?;
+    };
+    findings.extend(check_force(&looked)?);
+    if let Some(own) = &unloading {
+        let found = check_unloading(&looked, own.node);
+        findings.extend(found.map_err(|error| FormulaError::Unloading(Box::new(error)))?);
+    }
+    let (body, unlocated) = formula_body(&graph, (loading, force), &slopes, &values)?;
     if unlocated > 0 {
         findings.push(UserLawFinding::KinkNotLocated { places: unlocated });
     }
@@ -250,14 +258,81 @@ fn make_formula(
         definition: definition.clone(),
         key,
         starts: parameters.iter().map(|p| p.start).collect(),
-        linear: linear(&graph, &slopes, names.len(), &values),
+        linear,
         description: LawDescription {
-            first_touch: first_touch(&graph, force, &values),
+            first_touch: first_touch(&graph, loading, &values),
             ..description
         },
         findings,
         body: Body::Formula(body),
     })
+}
+
+/// The formula below the largest displacement so far.
+struct Unloading<'a> {
+    text: &'a str,
+    term: Term,
+    /// Its node, and that of the whole force.
+    node: Id,
+    force: Id,
+}
+
+impl<'a> Unloading<'a> {
+    fn new(
+        graph: &mut Graph,
+        loading: Id,
+        text: &'a str,
+        names: &[String],
+    ) -> Result<Self, FormulaError> {
+        if let Some(name) = names.iter().find(|own| REMEMBERED.contains(&own.as_str())) {
+            return Err(FormulaError::BadName {
+                name: name.clone(),
+                reason: "it has a meaning in `unloading`",
+            });
+        }
+        let term = parse_unloading(text, names);
+        let term = term.map_err(|error| FormulaError::Unloading(Box::new(error)))?;
+        let (node, force) = graph.remembering(loading, &term);
+        Ok(Self {
+            text,
+            term,
+            node,
+            force,
+        })
+    }
+}
+
+fn described_formula(
+    parameters: &[UserParameter],
+    name: String,
+    formula: &str,
+    unloading: Option<&Unloading>,
+) -> LawDescription {
+    let descriptions: &'static [ParameterDescription] =
+        Box::leak(parameters.iter().map(described).collect());
+    // By their names alone, as the built-in laws have them.
+    let damping = ["c", "lambda"].into_iter().find_map(|usual| {
+        let named = |p: &&ParameterDescription| p.name.to_lowercase() == usual;
+        descriptions.iter().find(named)
+    });
+    let formula = formula.trim();
+    LawDescription {
+        name: leaked(name),
+        formula: match unloading {
+            None => leaked(formula),
+            Some(own) => leaked(format!(
+                "{formula}; below the largest displacement x_max so far, {}",
+                own.text.split_whitespace().collect::<Vec<&str>>().join(" ")
+            )),
+        },
+        first_touch: "as the formula says",
+        source: "the user's own formula",
+        elastic: Elastic::Other,
+        damping: damping.map(|p| (p.name, Power::Number(0.0))),
+        linear: &[],
+        from_compression: false,
+        parameters: descriptions,
+    }
 }
 
 /// ∂F by x, v and each parameter.
@@ -328,89 +403,6 @@ fn dimensions(
             })
         })
         .collect()
-}
-
-/// The compiled formula, and how many changes of piece have no known place.
-fn formula_body(
-    graph: &Graph,
-    force: Id,
-    slopes: &[Id],
-    values: &[f64],
-) -> Result<(FormulaBody, usize), FormulaError> {
-    let mut conditions = Vec::new();
-    for node in &graph.nodes[..=force] {
-        if let Node::Choice(condition, _, _) = node
-            && !conditions.contains(condition)
-        {
-            conditions.push(*condition);
-        }
-    }
-    // The first displacement at which a piece ends is located.
-    let at = conditions.iter().find_map(|id| displacement_of(graph, *id));
-    let unlocated = conditions
-        .iter()
-        .filter(|id| at.is_none() || displacement_of(graph, **id) != at)
-        .filter(|id| !graph.invariant[**id])
-        .count();
-    let (start_power, powers) = starting_powers(graph, force, values);
-    let wanted: Vec<Id> = at.into_iter().chain(powers.iter().map(|p| p.1)).collect();
-    let roots: Vec<Id> = std::iter::once(force)
-        .chain(slopes.iter().copied())
-        .collect();
-    let compiled = compile(graph, &roots, &wanted, values.len())?;
-    let constant = |id: Id| {
-        let place = compiled.hoisted.iter().position(|known| *known == id);
-        place.map(|place| values.len() + place)
-    };
-    let body = FormulaBody {
-        start_power,
-        powers: powers
-            .iter()
-            .filter_map(|(order, id)| constant(*id).map(|c| (*order, c)))
-            .collect(),
-        kink: at.and_then(constant),
-        hoisted: compiled.hoisted.len(),
-        main: compiled.main,
-        prelude: compiled.prelude,
-    };
-    Ok((body, unlocated))
-}
-
-/// The displacement at which a condition x − d or d − x changes.
-fn displacement_of(graph: &Graph, condition: Id) -> Option<Id> {
-    match graph.nodes[condition] {
-        Node::Difference(a, b) => match (graph.nodes[a], graph.nodes[b]) {
-            (Node::Displacement, _) if graph.invariant[b] => Some(b),
-            (_, Node::Displacement) if graph.invariant[a] => Some(a),
-            _ => None,
-        },
-        _ => None,
-    }
-}
-
-/// Start power by the powers with a known exponent, and the others: order of
-/// the base in x, and exponent.
-fn starting_powers(graph: &Graph, force: Id, values: &[f64]) -> (u32, Vec<(f64, Id)>) {
-    let near = node_values(graph, values, 1e-12, 0.5);
-    let nearer = node_values(graph, values, 1e-14, 0.5);
-    let mut power = 1;
-    let mut others = Vec::new();
-    for node in &graph.nodes[..=force] {
-        let Node::Power(base, exponent) = *node else {
-            continue;
-        };
-        let order = (near[base] / nearer[base]).abs().ln() / 100_f64.ln();
-        if graph.invariant[base] || !order.is_finite() || order < 1e-3 {
-            continue;
-        }
-        let order = (4.0 * order).round() / 4.0;
-        match graph.value(exponent) {
-            Some(exponent) => power = power.max(start_power_of(order * exponent)),
-            None if graph.invariant[exponent] => others.push((order, exponent)),
-            None => power = power.max(2),
-        }
-    }
-    (power, others)
 }
 
 /// Parameters that the force is linear in: those of the force at rest, and those

@@ -36,6 +36,14 @@ pub struct UserParameter {
 pub enum UserForce {
     /// A formula in x (m), v (m/s) and the parameters; N.
     Formula(String),
+    /// Formulas of loading, and of unloading and reloading below the largest displacement so
+    /// far: in x, v, `x_max` (m), `F_max` (N) and the parameters; N.
+    WithMemory {
+        /// Of loading.
+        force: String,
+        /// Below the largest displacement so far.
+        unloading: String,
+    },
     /// A table, with the parameters `scale` and `damping_scale`.
     Table(ForceTable),
 }
@@ -83,6 +91,8 @@ pub(crate) struct FormulaBody {
     pub prelude: Program,
     /// Constants that the prelude gives, behind the parameters.
     pub hoisted: usize,
+    /// Whether the force depends on the largest displacement so far.
+    pub memory: bool,
     /// Start power of the powers with known exponents.
     pub start_power: u32,
     /// For powers with an exponent among the constants: the order in x of the
@@ -194,7 +204,7 @@ impl UserLaw {
         constants[..count].copy_from_slice(values);
         let (mut kink, mut start_power) = (f64::INFINITY, 1);
         if let Body::Formula(body) = &kind.0.body {
-            let hoisted: [f64; CONSTANTS] = body.prelude.evaluate(&constants, 0.0, 0.0);
+            let hoisted: [f64; CONSTANTS] = body.prelude.evaluate(&constants, [0.0; 3]);
             constants[count..count + body.hoisted].copy_from_slice(&hoisted[..body.hoisted]);
             start_power = body.start_power;
             for &(order, constant) in &body.powers {
@@ -240,10 +250,17 @@ pub(crate) fn start_power_of(exponent: f64) -> u32 {
     }
 }
 
-/// Force, its slopes in x and v, and those in the parameters.
-const OUTPUTS: usize = 3 + LARGEST_PARAMETERS;
+/// Force, its slopes in x and v, those in the parameters, and that in the largest displacement.
+pub(crate) const OUTPUTS: usize = 4 + LARGEST_PARAMETERS;
 
 impl ContactLaw<LARGEST_PARAMETERS> for UserLaw {
+    fn history(&self) -> bool {
+        match &self.kind.0.body {
+            Body::Formula(body) => body.memory,
+            Body::Table { .. } => false,
+        }
+    }
+
     fn start_power(&self) -> u32 {
         self.start_power
     }
@@ -253,18 +270,18 @@ impl ContactLaw<LARGEST_PARAMETERS> for UserLaw {
     }
 
     #[inline(always)]
-    fn evaluate<R: Real>(&self, d: R, v: R, _peak: R) -> ContactForce<R, LARGEST_PARAMETERS> {
+    fn evaluate<R: Real>(&self, d: R, v: R, peak: R) -> ContactForce<R, LARGEST_PARAMETERS> {
         match &self.kind.0.body {
             Body::Formula(body) => {
-                let out: [R; OUTPUTS] = body.main.evaluate(&self.constants, d, v);
+                let out: [R; OUTPUTS] = body.main.evaluate(&self.constants, [d, v, peak]);
                 let mut by_parameter = [d.constant(0.0); LARGEST_PARAMETERS];
-                by_parameter.copy_from_slice(&out[3..]);
+                by_parameter.copy_from_slice(&out[3..OUTPUTS - 1]);
                 ContactForce {
                     force: out[0],
                     by_displacement: out[1],
                     by_rate: out[2],
                     by_parameter,
-                    by_peak: d.constant(0.0),
+                    by_peak: out[OUTPUTS - 1],
                 }
             }
             Body::Table { force, damping } => {

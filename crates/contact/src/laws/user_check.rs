@@ -10,16 +10,16 @@ use crate::laws::user_finding::UserLawFinding;
 use crate::parameter::number_text;
 
 /// Rates checked; m/s. Fruit meet at up to a few metres per second.
-const RATES: [f64; 7] = [2.0, 0.5, 0.05, 0.0, -0.05, -0.5, -2.0];
+pub(crate) const RATES: [f64; 7] = [2.0, 0.5, 0.05, 0.0, -0.05, -0.5, -2.0];
 /// Smallest and largest displacement checked; m.
 const DISPLACEMENTS: (f64, f64) = (1e-7, 1e-2);
 /// How many.
 const STEPS: usize = 60;
 /// Up to here a law must be in order; beyond, a finding says what is not; m.
-const MUST: f64 = 1e-3;
+pub(crate) const MUST: f64 = 1e-3;
 /// A jump is a change across a point of more than this part of the force, and
 /// more than this force.
-const JUMP: (f64, f64) = (1e-6, 1e-9);
+pub(crate) const JUMP: (f64, f64) = (1e-6, 1e-9);
 
 /// A formula to check.
 pub(crate) struct Looked<'a> {
@@ -52,12 +52,12 @@ impl Looked<'_> {
         node_values(self.graph, self.values, x, v)
     }
 
-    fn force(&self, x: f64, v: f64) -> f64 {
+    pub(crate) fn force(&self, x: f64, v: f64) -> f64 {
         self.at(x, v)[self.force]
     }
 
     /// "k = 4e5, n = 1.5".
-    fn values_text(&self) -> String {
+    pub(crate) fn values_text(&self) -> String {
         let named = self.names.iter().zip(self.values);
         let texts: Vec<String> = named
             .map(|(name, value)| format!("{name} = {}", number_text(*value)))
@@ -66,7 +66,7 @@ impl Looked<'_> {
     }
 }
 
-fn displacements() -> impl Iterator<Item = f64> {
+pub(crate) fn displacements() -> impl Iterator<Item = f64> + Clone {
     let (low, high) = DISPLACEMENTS;
     let ratio: f64 = high / low;
     (0..=STEPS).map(move |i| low * ratio.powf(i as f64 / STEPS as f64))

@@ -43,6 +43,32 @@ pub enum UserLawFinding {
         /// Values of the parameters, as text.
         values: String,
     },
+    /// A rate-dependent force that differs on both sides of the largest displacement.
+    #[error(
+        "where a reloading passes x_max = {peak:.3e} m at v = {rate} m/s, the force jumps from {unloading:.4e} N to {loading:.4e} N: derivatives are not exact for impacts that load twice; write the same damping in force and unloading"
+    )]
+    JumpsOnReloading {
+        /// Largest displacement; m.
+        peak: f64,
+        /// Rate; m/s.
+        rate: f64,
+        /// Force by the formula of unloading; N.
+        unloading: f64,
+        /// Force by the formula of loading; N.
+        loading: f64,
+    },
+    /// Unloading that gives back more than loading took.
+    #[error(
+        "at rest, unloading from x_max = {peak:.3e} m pushes more than loading did (at x = {displacement:.3e} m, with {values}): the contact gives back more energy than it took"
+    )]
+    GainsEnergy {
+        /// Largest displacement; m.
+        peak: f64,
+        /// Displacement; m.
+        displacement: f64,
+        /// Values of the parameters, as text.
+        values: String,
+    },
     /// A unit that holds for one value of an exponent only.
     #[error(
         "the units hold only where {exponent} = {value}: write the exponent's name in them, as in N/m^{exponent}, so that they hold for every value"
@@ -64,6 +90,8 @@ impl UserLawFinding {
             Self::DoesNotRise { .. } => "does-not-rise",
             Self::UndefinedBeyond { .. } => "undefined-beyond",
             Self::PullsBeyond { .. } => "pulls-beyond",
+            Self::JumpsOnReloading { .. } => "jumps-on-reloading",
+            Self::GainsEnergy { .. } => "gains-energy",
             Self::UnitOfOneExponent { .. } => "unit-of-one-exponent",
         }
     }

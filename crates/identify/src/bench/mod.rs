@@ -2,5 +2,6 @@
 //! sensor or an arm that swings.
 
 pub mod cause;
+mod kind;
 pub mod residuals;
 mod search;

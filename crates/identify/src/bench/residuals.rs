@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::fit::plan::{Plan, plan};
 use crate::fit::problem::{FitOptions, LawProblem};
-use crate::fit::response::{Motion, Shift, clock};
+use crate::fit::response::{Motion, Shift, clock, value_at};
 use crate::fit::solve::Solution;
 use crate::fit::uncertainty::{inflation, standardised};
 use crate::rig::kind::Rig;
@@ -42,40 +42,20 @@ pub struct BenchResiduals {
     pub(crate) duration: f64,
 }
 
-/// Fits each of `problems` to an impact, all with the noise of the one that describes it best,
-/// and gives what each leaves. `None` of one that does not converge.
+/// Fits `problem` to an impact and gives what that leaves.
 ///
 /// # Errors
 /// As [`fit_impact`](crate::fit::result::fit_impact).
 pub fn bench_residuals(
     impact: &Impact,
     rig: &Rig,
-    problems: &[LawProblem],
+    problem: &LawProblem,
     options: &FitOptions,
-) -> Result<Vec<Option<BenchResiduals>>, Error> {
+) -> Result<BenchResiduals, Error> {
     rig.check()?;
-    let first = problems.iter().map(|problem| {
-        let mut plan = plan(impact, rig, problem, options)?;
-        let solution = plan.solve_once(rig)?;
-        Ok((plan, solution))
-    });
-    let mut first: Vec<Result<(Plan, Solution), Error>> = first.collect();
-    let solved = first.iter().flatten();
-    let Some(best) = solved.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost)) else {
-        let first = first.into_iter().find_map(Result::err);
-        return first.map_or(Ok(Vec::new()), Err);
-    };
-    let noise = best.0.noise_after(&best.1, rig)?;
-    let found = first.iter_mut().map(|own| {
-        let Ok((plan, solution)) = own else {
-            return None;
-        };
-        let shift = plan.noise.shift.take();
-        plan.noise = noise.clone().with_shift(shift, impact.onset);
-        let solution = plan.solve_again(solution, rig).ok()?;
-        of_solution(plan, &solution, rig).ok()
-    });
-    Ok(found.collect())
+    let mut plan = plan(impact, rig, problem, options)?;
+    let solution = plan.solve(rig)?;
+    of_solution(&plan, &solution, rig)
 }
 
 fn of_solution(plan: &Plan, solution: &Solution, rig: &Rig) -> Result<BenchResiduals, Error> {
@@ -234,14 +214,6 @@ impl BenchResiduals {
     }
 
     fn force_at(&self, time: f64) -> f64 {
-        let place = (time - self.onset) / self.step;
-        if place <= 0.0 {
-            return 0.0;
-        }
-        let last = self.force.len() - 1;
-        let at = (place as usize).min(last);
-        let next = (at + 1).min(last);
-        let part = (place - at as f64).min(1.0);
-        self.force[at] + part * (self.force[next] - self.force[at])
+        value_at(&self.force, (time - self.onset) / self.step)
     }
 }

@@ -1,11 +1,10 @@
 //! Least squares over all impacts of a bench: common parameters, and each fit's own besides.
 
-use crate::bench::cause::Cause;
+use crate::bench::kind::{Cause, MOST};
 use crate::bench::residuals::{BenchFault, BenchResiduals};
+use crate::fit::uncertainty::sandwich;
 use windfall_numerics::least_squares::{Bounds, LeastSquares, NormalEquations, Options, minimise};
 
-/// Parameters of a cause at most: gain, delay, frequency, damping, compliance.
-pub(crate) const MOST: usize = 5;
 /// Step of the derivatives, in the coordinate of each parameter.
 const STEP: f64 = 1e-4;
 /// Frequencies tried, from so many swings in a contact up; and how they rise.
@@ -108,6 +107,8 @@ impl Search<'_> {
         let (slowest, fastest) = self.frequencies();
         (bounds.lower[2], bounds.upper[2]) = (slowest.ln(), fastest.ln());
         (bounds.lower[3], bounds.upper[3]) = (DAMPING.0.ln(), DAMPING.1.ln());
+        // A force bends an arm out of its way.
+        bounds.lower[4] = 0.0;
         bounds
     }
 
@@ -133,17 +134,12 @@ impl Search<'_> {
             true => &DAMPINGS,
             false => &DAMPINGS[..1],
         };
-        let compliances: &[f64] = match self.cause.arm {
-            true => &[1.0, -1.0],
-            false => &[0.0],
-        };
+        let compliance = if self.cause.arm { 1.0 } else { 0.0 };
         let mut starts = Vec::new();
         for step in 0..=count {
             for damping in dampings {
-                for compliance in compliances {
-                    let frequency = slowest * RISE.powi(step);
-                    starts.push([0.0, 0.0, frequency.ln(), damping.ln(), *compliance]);
-                }
+                let frequency = slowest * RISE.powi(step);
+                starts.push([0.0, 0.0, frequency.ln(), damping.ln(), compliance]);
             }
         }
         starts
@@ -176,17 +172,7 @@ impl Search<'_> {
             }
         }
         let bread = all.inverse(MOST)?;
-        let mut out = [[0.0; MOST]; MOST];
-        for i in 0..MOST {
-            for j in 0..MOST {
-                for k in 0..MOST {
-                    for l in 0..MOST {
-                        out[i][j] += bread[i][k] * meat[k][l] * bread[l][j];
-                    }
-                }
-            }
-        }
-        Some(out)
+        Some(sandwich(&bread, &meat, MOST))
     }
 }
 

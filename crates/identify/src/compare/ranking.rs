@@ -266,22 +266,6 @@ pub fn fits_of_impact(
     fits.into_iter().map(usable).collect()
 }
 
-/// Velocity levels of impacts by their velocities: a new one wherever the sorted
-/// velocities jump by more than `gap` of the lower.
-pub fn velocity_levels(velocities: &[f64], gap: f64) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..velocities.len()).collect();
-    order.sort_by(|a, b| velocities[*a].total_cmp(&velocities[*b]));
-    let mut levels = vec![0; velocities.len()];
-    let mut level = 0;
-    for pair in order.windows(2) {
-        if velocities[pair[1]] > velocities[pair[0]] * (1.0 + gap) {
-            level += 1;
-        }
-        levels[pair[1]] = level;
-    }
-    levels
-}
-
 /// 95 % interval of the sum of differences over impacts like these, taken as
 /// independent: n (mean ± t s/√n).
 fn interval(own: &[f64], best: &[f64]) -> Option<(f64, f64)> {

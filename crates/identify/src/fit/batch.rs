@@ -183,7 +183,13 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
                 self.impacts.begin(lane, &leg, &mut self.lockstep);
                 Progress::Going
             }
-            Next::End => Progress::Done(Some(run.tally.total(groups, run.stride))),
+            Next::End => {
+                let mut found = run.tally.total(groups, run.stride);
+                if let Some((u, stride)) = fit.search.propose() {
+                    fit.problem.estimator.add_priors(&u, stride, &mut found);
+                }
+                Progress::Done(Some(found))
+            }
             Next::Fail => Progress::Done(None),
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::fit::batch::{BatchProblem, minimise_batch};
 use crate::fit::batch_law::BatchLaw;
-use crate::fit::estimator::Estimator;
+use crate::fit::estimator::{Estimator, FreeParameter};
 use crate::fit::interval::{
     Bootstrap, FreeIntervals, IntervalDetail, IntervalOptions, IntervalPlan, deviation, quantile,
 };
@@ -79,6 +79,7 @@ pub(crate) fn bootstrap_intervals<
     };
     let mut recordings = vec![estimator.groups().to_vec(); TOGETHER.min(replicates)];
     let mut starts = vec![[0.0; P]; recordings.len()];
+    let mut frees = vec![free.to_vec(); recordings.len()];
     let mut minima = vec![*minimum; recordings.len()];
     let mut estimates = vec![Vec::with_capacity(replicates); count];
     let mut failed = 0;
@@ -86,14 +87,16 @@ pub(crate) fn bootstrap_intervals<
         let together = TOGETHER.min(replicates - first);
         for (i, groups) in recordings[..together].iter_mut().enumerate() {
             let mut source = noise_source(seed, (first + i) as u64);
-            let gradient = resample(&channels, groups, &mut source);
+            let mut gradient = resample(&channels, groups, &mut source);
+            redraw_priors(minimum, &mut frees[i], &mut gradient, &mut source);
             starts[i] = stepped(&minimum.parameters, &inverse, &gradient, count);
         }
         let problems: Vec<_> = recordings[..together]
             .iter()
             .zip(&starts)
-            .map(|(groups, start)| BatchProblem {
-                estimator: estimator.with_groups(groups),
+            .zip(&frees)
+            .map(|((groups, start), free)| BatchProblem {
+                estimator: estimator.with_groups(groups).with_free(free),
                 from: Some(*start),
                 options,
             })
@@ -135,6 +138,25 @@ pub(crate) fn bootstrap_intervals<
     })
 }
 
+/// Draws the means of priors anew around the estimate, as if they were data; adds half the
+/// gradient of their cost at the estimate.
+fn redraw_priors<const P: usize>(
+    minimum: &Minimum<P>,
+    free: &mut [FreeParameter],
+    gradient: &mut [f64; P],
+    source: &mut NoiseSource,
+) {
+    for (i, parameter) in free.iter_mut().enumerate() {
+        let coordinate = parameter.coordinate;
+        if let Some(prior) = &mut parameter.prior {
+            let value = coordinate.value(minimum.parameters[i]);
+            let drawn = normal(source);
+            prior.mean = value - prior.sd * drawn;
+            gradient[i] += drawn * coordinate.slope(value) / prior.sd;
+        }
+    }
+}
+
 /// `from` less the first `count` components of `inverse` · `gradient`.
 fn stepped<const P: usize>(
     from: &[f64; P],
@@ -170,7 +192,11 @@ fn channels<const P: usize>(
             // The weights are those of the residuals with what correlation they
             // have left: blocks must not spread less than that.
             let square = pool.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / n as f64;
-            let scale = (1.0 / square.max(f64::MIN_POSITIVE)).max(freedom).sqrt();
+            let unit = 1.0 / square.max(f64::MIN_POSITIVE);
+            let scale = match group.given[quantity as usize] {
+                true => unit.sqrt(),
+                false => unit.max(freedom).sqrt(),
+            };
             pool.iter_mut().for_each(|z| *z = (*z - mean) * scale);
             out.push(Channel {
                 group: g,

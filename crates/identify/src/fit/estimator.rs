@@ -2,6 +2,7 @@
 //! coordinates of their own, the model behind them, the minimiser around it.
 
 use crate::fit::model::{Columns, Model, Sampling};
+use crate::fit::problem::Prior;
 use crate::fit::residual::{Rows, evaluate, evaluate_some};
 pub use crate::fit::search::FORESIGHT;
 use crate::fit::search::{Search, seen};
@@ -90,6 +91,8 @@ pub struct FreeParameter {
     pub lower: f64,
     /// Largest value; SI.
     pub upper: f64,
+    /// What is known of it before the data.
+    pub prior: Option<Prior>,
 }
 
 /// Values of everything that the model depends on, free or not; SI.
@@ -215,6 +218,11 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// The samples.
     pub fn groups(&self) -> &'a [SampleGroup] {
         self.groups
+    }
+
+    /// The same problem with other free parameters, of the same targets.
+    pub(crate) fn with_free(self, free: &'a [FreeParameter]) -> Self {
+        Self { free, ..self }
     }
 
     /// The same problem with other samples.
@@ -358,9 +366,31 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     pub(crate) fn evaluate_share(&self, u: &[f64; P], stride: usize) -> Option<NormalEquations<P>> {
         let model = self.model_for(u, stride);
         let groups = self.groups;
-        match stride {
-            1 => evaluate(&model, groups, None).ok(),
-            _ => evaluate_some(&model, groups, stride).ok(),
+        let mut found = match stride {
+            1 => evaluate(&model, groups, None).ok()?,
+            _ => evaluate_some(&model, groups, stride).ok()?,
+        };
+        self.add_priors(u, stride, &mut found);
+        Some(found)
+    }
+
+    /// Adds the residuals of the priors at coordinates `u`, with the weight of one in `stride`
+    /// packs of samples.
+    #[inline]
+    pub(crate) fn add_priors(
+        &self,
+        u: &[f64; P],
+        stride: usize,
+        equations: &mut NormalEquations<P>,
+    ) {
+        for (i, parameter) in self.free.iter().enumerate() {
+            let Some(Prior { mean, sd }) = parameter.prior else {
+                continue;
+            };
+            let value = parameter.coordinate.value(u[i]);
+            let mut row = [0.0; P];
+            row[i] = parameter.coordinate.slope(value) / sd;
+            equations.add(1.0 / stride as f64, (value - mean) / sd, &row);
         }
     }
 
@@ -373,7 +403,8 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// Residuals and derivatives of each sample at coordinates `u`.
     pub fn rows(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
         let mut rows = Rows::default();
-        let equations = evaluate(&self.model(u), self.groups, Some(&mut rows)).ok()?;
+        let mut equations = evaluate(&self.model(u), self.groups, Some(&mut rows)).ok()?;
+        self.add_priors(u, 1, &mut equations);
         Some((equations, rows))
     }
 }
@@ -382,6 +413,6 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares
     for Estimator<'_, L, N, W, P>
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
-        evaluate(&self.model(u), self.groups, None).ok()
+        self.evaluate_share(u, 1)
     }
 }

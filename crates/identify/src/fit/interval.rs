@@ -17,8 +17,8 @@ pub enum IntervalMethod {
     /// Spread of the estimates over recordings made of the fitted model and
     /// blocks of its residuals.
     Bootstrap,
-    /// Quantiles of the posterior distribution under flat priors in the
-    /// minimiser's coordinates (logarithms of scales).
+    /// Quantiles of the posterior distribution: under the priors that are given, and flat
+    /// ones in the minimiser's coordinates (logarithms of scales) for the others.
     Posterior,
 }
 
@@ -154,9 +154,6 @@ pub(crate) struct IntervalPlan {
     pub confidence: f64,
     /// Student's quantile of the confidence.
     pub quantile: f64,
-    /// Normal priors of the free parameters' coordinates: mean and standard deviation;
-    /// flat where `None`.
-    pub priors: Vec<Option<(f64, f64)>>,
 }
 
 /// Intervals of the free parameters in their order, in the minimiser's

@@ -31,6 +31,8 @@ pub(crate) struct NoisePlan {
     pub noise: [f64; QUANTITIES],
     /// Correlation of the noise of successive samples as they were recorded; 1.
     pub persistence: [f64; QUANTITIES],
+    /// Noise of a sample that the user gave, in place of what the recording shows; SI.
+    pub given: [Option<f64>; QUANTITIES],
     /// What the instruments add, where it has been taken off.
     pub shift: Option<Shift>,
 }
@@ -71,6 +73,7 @@ pub(crate) fn noise_plan(
         edges: None,
         noise: [f64::NAN; QUANTITIES],
         persistence: [0.0; QUANTITIES],
+        given: options.noise_sd,
         shift: None,
     };
     for (quantity, series) in used.iter().filter(|_| modelled) {
@@ -78,6 +81,7 @@ pub(crate) fn noise_plan(
     }
     if modelled
         && let Some((_, displacement)) = used.iter().find(|(q, _)| *q == Quantity::Displacement)
+        && options.noise_sd[Quantity::Displacement as usize].is_none()
         && let Some(edges) = edge_samples(displacement)
     {
         used.retain(|(q, _)| *q != Quantity::Displacement);
@@ -122,8 +126,10 @@ fn grouped(
         let length = length_of_blocks(impact, series, persistence);
         if length > 1 {
             let (ratio, rest) = mean_noise(persistence, length);
-            noise[quantity as usize] = series.noise * ratio.sqrt();
-            groups.push(block_group(impact, quantity, series, length, rest, noise));
+            noise[quantity as usize] = noise_of(series, quantity, &options.noise_sd) * ratio.sqrt();
+            let given = options.noise_sd[quantity as usize].is_some();
+            let group = block_group(impact, quantity, series, length, rest, noise);
+            groups.push(group.with_given_noise(quantity, given));
             done[quantity as usize] = true;
         }
     }
@@ -136,15 +142,21 @@ fn grouped(
         for &(quantity, other) in &used[i..] {
             if !done[quantity as usize] && other.times == first.times {
                 done[quantity as usize] = true;
-                noise[quantity as usize] = other.noise;
-                let weight = weight_of(impact, other, options.weighting);
+                let own = noise_of(other, quantity, &options.noise_sd);
+                noise[quantity as usize] = own;
+                let weight = weight_of(impact, (other, own), options.weighting);
                 values[quantity as usize] = Some((&other.values, weight));
                 held.push((quantity, other));
             }
         }
         let times: Vec<f64> = first.times.iter().map(|t| t - impact.onset).collect();
         let mut group = SampleGroup::new(&times, values);
-        for (quantity, series) in held.into_iter().filter(|_| modelled) {
+        for (quantity, series) in held {
+            let given = options.noise_sd[quantity as usize].is_some();
+            group = group.with_given_noise(quantity, given);
+            if !modelled {
+                continue;
+            }
             group = group
                 .with_persistence(quantity, series.persistence.unwrap_or(0.0))
                 .with_zero_sd(quantity, series.zero_sd);
@@ -182,9 +194,14 @@ fn block_group(
         .of_means()
 }
 
-fn weight_of(impact: &Impact, series: &Series, weighting: Weighting) -> f64 {
+/// Noise of a sample: as the user gave it, or as the recording shows it.
+fn noise_of(series: &Series, quantity: Quantity, given: &[Option<f64>; QUANTITIES]) -> f64 {
+    given[quantity as usize].unwrap_or(series.noise)
+}
+
+fn weight_of(impact: &Impact, (series, noise): (&Series, f64), weighting: Weighting) -> f64 {
     match weighting {
-        Weighting::InverseVariance => 1.0 / (series.noise * series.noise),
+        Weighting::InverseVariance => 1.0 / (noise * noise),
         Weighting::InverseMean => {
             let inside = series.times.iter().zip(&series.values);
             let inside = inside.filter(|(t, _)| **t >= impact.onset && **t <= impact.end);
@@ -284,8 +301,9 @@ impl NoisePlan {
         }
         let (ratio, rest) = mean_noise(persistence, length);
         let mut noise = self.noise;
-        noise[quantity as usize] = series.noise * ratio.sqrt();
-        let mut group = block_group(impact, quantity, series, length, rest, &noise);
+        noise[quantity as usize] = noise_of(series, quantity, &self.given) * ratio.sqrt();
+        let mut group = block_group(impact, quantity, series, length, rest, &noise)
+            .with_given_noise(quantity, self.given[quantity as usize].is_some());
         if let Some(shift) = &self.shift {
             group.shift(|quantity, time| -shift.at(quantity, time));
         }
@@ -304,6 +322,9 @@ fn rescaled(
     residuals: &[f64],
     freedom: f64,
 ) -> SampleGroup {
+    if group.given[quantity as usize] {
+        return group;
+    }
     let z = standardised(&group, quantity, residuals);
     let variance = freedom * z.iter().map(|z| z * z).sum::<f64>() / z.len() as f64;
     let ratio = (variance * inflation(&z)).max(LEAST_VARIANCE_RATIO);

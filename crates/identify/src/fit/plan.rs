@@ -3,11 +3,12 @@
 
 use crate::error::{Error, check_positive};
 use crate::finding::Finding;
-use crate::fit::estimator::{Coordinate, FreeParameter, Setting, Target};
+use crate::fit::estimator::{FreeParameter, Setting, Target};
+use crate::fit::free::{begin_as_known, free_parameters, is_scale};
 use crate::fit::interval::{IntervalMethod, IntervalPlan};
 use crate::fit::model::Sampling;
 use crate::fit::noise::{NoisePlan, noise_plan, series};
-use crate::fit::problem::{FitOptions, LawProblem, NoiseModel, Treatment, Weighting};
+use crate::fit::problem::{FitOptions, LawProblem, NoiseModel, Weighting};
 use crate::fit::regression::{RegressionEstimate, regress};
 use crate::fit::solve::{Limits, Solution, Start, solve};
 use crate::fit::starting_values::impact_scales;
@@ -17,16 +18,11 @@ use crate::rig::simulate::trajectory;
 use crate::sampler::check_sampler;
 use crate::samples::{Quantity, SampleGroup};
 use windfall_contact::impact_law::ImpactScales;
-use windfall_contact::laws::kind::LawKind;
 use windfall_contact::parameter::IMPACT_VELOCITY;
 use windfall_contact::starting_values::starting_values;
 use windfall_numerics::ode::step::Tolerance;
 use windfall_signal::impact::Impact;
 
-/// Range searched for a scale parameter, as factors of its start.
-const SEARCH_FACTOR: f64 = 1e5;
-/// Range searched for the velocity, as a factor of its start.
-const VELOCITY_FACTOR: f64 = 5.0;
 /// Factors of stiffness and damping tried when the first start fails.
 const OTHER_STARTS: [(f64, f64); 4] = [(0.3, 1.0), (3.0, 1.0), (1.0, 0.2), (1.0, 3.0)];
 
@@ -65,7 +61,8 @@ pub(crate) fn plan<'a>(
         check_positive("the velocity at first touch", velocity)?;
         features.velocity = velocity;
     }
-    let start = starting_values(problem.kind, &features, &problem.values);
+    let mut start = starting_values(problem.kind, &features, &problem.values);
+    begin_as_known(problem, &mut start);
     let regression = regression_of(impact, problem, &start);
     let free = free_parameters(impact, problem, options, &features, &start, &mut findings)?;
     let samples = noise.groups.iter().map(sample_count).sum();
@@ -153,141 +150,6 @@ fn starts(
     out
 }
 
-/// Whether a parameter is a positive scale, to be moved on a logarithmic axis.
-fn is_scale(kind: LawKind, position: usize, start: f64) -> bool {
-    let parameter = &kind.describe().parameters[position];
-    parameter.unit != "1" && parameter.lower >= 0.0 && start > 0.0
-}
-
-/// Size of a parameter that is moved on a linear axis: exponents and the like
-/// are of the order of one, others of that of their start.
-fn linear_scale(kind: LawKind, position: usize, start: f64) -> f64 {
-    match kind.describe().parameters[position].unit {
-        "1" => 1.0,
-        _ if start != 0.0 => start.abs(),
-        _ => 1.0,
-    }
-}
-
-fn free_parameters(
-    impact: &Impact,
-    problem: &LawProblem,
-    options: &FitOptions,
-    features: &ImpactScales,
-    start: &[f64],
-    findings: &mut Vec<Finding>,
-) -> Result<Vec<FreeParameter>, Error> {
-    let description = problem.kind.describe();
-    let mut free: Vec<FreeParameter> = problem
-        .free_positions()
-        .map(|i| {
-            let parameter = &description.parameters[i];
-            let (coordinate, lower, upper) = match is_scale(problem.kind, i, start[i]) {
-                true => (
-                    Coordinate::Logarithm,
-                    parameter.lower.max(start[i] / SEARCH_FACTOR),
-                    parameter.upper.min(start[i] * SEARCH_FACTOR),
-                ),
-                false => (
-                    Coordinate::Linear(linear_scale(problem.kind, i, start[i])),
-                    parameter.lower,
-                    parameter.upper,
-                ),
-            };
-            FreeParameter {
-                target: Target::Law(i),
-                coordinate,
-                lower,
-                upper,
-            }
-        })
-        .collect();
-    let nuisances = nuisances(impact, options, features, findings)?;
-    if !nuisances.is_empty() {
-        let names: Vec<_> = nuisances
-            .iter()
-            .map(|p| nuisance_name(p.target).0)
-            .collect();
-        findings.push(Finding::Freed {
-            quantities: names.join(", "),
-        });
-    }
-    free.extend(nuisances);
-    Ok(free)
-}
-
-/// Name and unit of a nuisance.
-pub(crate) fn nuisance_name(target: Target) -> (&'static str, &'static str) {
-    match target {
-        Target::Onset => ("onset", "s"),
-        Target::DisplacementOffset => ("displacement_offset", "m"),
-        Target::InitialVelocity | Target::Law(_) => ("initial_velocity", "m/s"),
-    }
-}
-
-/// Which nuisances are free, and findings for those that are held.
-fn nuisances(
-    impact: &Impact,
-    options: &FitOptions,
-    features: &ImpactScales,
-    findings: &mut Vec<Finding>,
-) -> Result<Vec<FreeParameter>, Error> {
-    let has = |q: Quantity| options.quantities.holds(q) && series(impact, q).is_some();
-    let moves = has(Quantity::Displacement) || has(Quantity::Rate);
-    let mut free = Vec::new();
-
-    let velocity = FreeParameter {
-        target: Target::InitialVelocity,
-        coordinate: Coordinate::Logarithm,
-        lower: features.velocity / VELOCITY_FACTOR,
-        upper: features.velocity * VELOCITY_FACTOR,
-    };
-    let measured = impact.measured.impact_velocity.is_some() || options.known_velocity.is_some();
-    let held = |quantity, value, unit, reason| Finding::Held {
-        quantity,
-        value,
-        unit,
-        reason,
-    };
-    match options.initial_velocity {
-        Treatment::Free => free.push(velocity),
-        Treatment::Auto if moves || !measured => free.push(velocity),
-        Treatment::Auto => findings.push(held(
-            "initial_velocity",
-            features.velocity,
-            "m/s",
-            "the quantities in the cost say little about it, and the motion before contact was measured",
-        )),
-        Treatment::Fixed if !measured => return Err(Error::UnknownVelocity),
-        Treatment::Fixed => {
-            findings.push(held("initial_velocity", features.velocity, "m/s", "as asked"));
-        }
-    }
-    let onset = FreeParameter {
-        target: Target::Onset,
-        coordinate: Coordinate::Linear(features.duration),
-        lower: -features.duration,
-        upper: features.duration,
-    };
-    match options.onset {
-        Treatment::Auto | Treatment::Free => free.push(onset),
-        Treatment::Fixed => findings.push(held("onset", impact.onset, "s", "as asked")),
-    }
-    let offset = FreeParameter {
-        target: Target::DisplacementOffset,
-        coordinate: Coordinate::Linear(features.displacement),
-        lower: -2.0 * features.displacement,
-        upper: 2.0 * features.displacement,
-    };
-    if has(Quantity::Displacement) {
-        match options.displacement_offset {
-            Treatment::Auto | Treatment::Free => free.push(offset),
-            Treatment::Fixed => findings.push(held("displacement_offset", 0.0, "m", "as asked")),
-        }
-    }
-    Ok(free)
-}
-
 impl Plan<'_> {
     /// Solves from the planned starts; then once more with the noise that the
     /// residuals show.
@@ -371,21 +233,7 @@ impl Plan<'_> {
             options,
             confidence: self.options.confidence,
             quantile: self.quantile(samples),
-            priors: self.free.iter().map(|p| self.prior(p)).collect(),
         })
-    }
-
-    /// A parameter's prior in its coordinate.
-    fn prior(&self, parameter: &FreeParameter) -> Option<(f64, f64)> {
-        let Target::Law(i) = parameter.target else {
-            return None;
-        };
-        let prior = self.problem.priors.get(i).copied().flatten()?;
-        let spread = match parameter.coordinate {
-            Coordinate::Logarithm => prior.spread,
-            Coordinate::Linear(scale) => prior.spread / scale,
-        };
-        Some((parameter.coordinate.of(prior.centre), spread))
     }
 
     /// What the minimiser holds constant.

@@ -1,10 +1,9 @@
 //! Posterior distribution of one impact's parameters, by the no-U-turn sampler.
 
-use crate::fit::estimator::{Estimator, FreeLaw};
+use crate::fit::estimator::{Coordinate, Estimator, FreeLaw};
 use crate::fit::interval::{
     FreeIntervals, IntervalDetail, IntervalPlan, Posterior, deviation, quantile,
 };
-use crate::fit::residual::evaluate;
 use crate::sampler::{Drawing, LogDensity, draw_chains};
 use windfall_numerics::least_squares::Minimum;
 use windfall_statistics::chain_diagnostics::{ChainDiagnostics, chain_diagnostics};
@@ -18,7 +17,6 @@ struct Density<'a, 'b, L, const N: usize, const W: usize, const P: usize> {
     estimator: &'a Estimator<'b, L, N, W, P>,
     minimum: &'a Minimum<P>,
     factor: &'a [[f64; P]; P],
-    priors: &'a [Option<(f64, f64)>],
     count: usize,
 }
 
@@ -48,15 +46,15 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LogDensity
         if !inside {
             return None;
         }
-        let model = self.estimator.model(&u);
-        let found = evaluate(&model, self.estimator.groups(), None).ok()?;
+        let found = self.estimator.evaluate_share(&u, 1)?;
         let mut density = -0.5 * (found.cost - self.minimum.equations.cost);
         // The normal equations hold half the gradient of the cost.
         let mut slope = found.gradient.map(|g| -g);
-        for (i, prior) in self.priors.iter().enumerate() {
-            if let Some((mean, sd)) = prior {
-                density -= 0.5 * ((u[i] - mean) / sd).powi(2);
-                slope[i] -= (u[i] - mean) / (sd * sd);
+        for (i, parameter) in self.estimator.free().iter().enumerate() {
+            // A prior is one of the value, and chains move in its logarithm.
+            if parameter.prior.is_some() && parameter.coordinate == Coordinate::Logarithm {
+                density += u[i];
+                slope[i] += 1.0;
             }
         }
         for (j, out) in gradient.iter_mut().enumerate() {
@@ -83,7 +81,6 @@ pub(crate) fn posterior_intervals<L: FreeLaw<N>, const N: usize, const W: usize,
         estimator,
         minimum,
         factor,
-        priors: &plan.priors,
         count,
     };
     let drawing = plan.options.drawing();

@@ -20,18 +20,32 @@ pub struct LawProblem {
     pub values: Vec<Option<f64>>,
     /// Which parameters are estimated.
     pub free: Vec<bool>,
-    /// Their priors, which only posteriors use; flat where `None`.
-    pub priors: Vec<Option<Prior>>,
+    /// What is known of parameters and nuisances beside the data.
+    pub known: Vec<Known>,
 }
 
-/// What is known of a parameter before the data.
+/// What is known of a parameter before the data: it is normal with this mean and deviation.
+///
+/// In a fit it is one more residual, (p − mean) / sd, of weight 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
-    /// Median; SI.
-    pub centre: f64,
-    /// Standard deviation: of the logarithm for a scale such as k or c, of the
-    /// value for an exponent or another parameter without a unit.
-    pub spread: f64,
+    /// Mean; SI.
+    pub mean: f64,
+    /// Standard deviation; SI.
+    pub sd: f64,
+}
+
+/// What is known of one parameter of the law or one nuisance.
+///
+/// A time of first touch is on the recording's clock.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// Its name: the law's, or "initial_velocity", "onset", "displacement_offset".
+    pub name: String,
+    /// What is known of it before the data; flat where `None`.
+    pub prior: Option<Prior>,
+    /// Values outside of which it is not searched; SI, infinite where there is no bound.
+    pub range: (f64, f64),
 }
 
 impl LawProblem {
@@ -53,9 +67,14 @@ impl LawProblem {
         Self {
             kind: expression.kind,
             values: expression.values.clone(),
-            priors: vec![None; free.len()],
+            known: Vec::new(),
             free,
         }
+    }
+
+    /// What is known of a parameter or nuisance.
+    pub fn known(&self, name: &str) -> Option<&Known> {
+        self.known.iter().find(|known| known.name == name)
     }
 
     /// Positions of the free parameters.
@@ -151,6 +170,9 @@ pub struct FitOptions {
     pub weighting: Weighting,
     /// Their noise.
     pub noise: NoiseModel,
+    /// Standard deviation of the noise of a sample of each quantity, in the order of
+    /// [`Quantity::ALL`], where it is known: residuals do not change it; SI.
+    pub noise_sd: [Option<f64>; QUANTITIES],
     /// Velocity at first touch.
     pub initial_velocity: Treatment,
     /// Velocity at first touch where it is known otherwise, in place of the one
@@ -184,6 +206,7 @@ impl Default for FitOptions {
             quantities: Quantities::default(),
             weighting: Weighting::default(),
             noise: NoiseModel::default(),
+            noise_sd: [None; QUANTITIES],
             initial_velocity: Treatment::default(),
             known_velocity: None,
             onset: Treatment::default(),

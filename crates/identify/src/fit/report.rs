@@ -3,9 +3,10 @@
 use crate::error::Error;
 use crate::finding::Finding;
 use crate::fit::estimator::{Coordinate, Target};
+use crate::fit::free::nuisance_name;
 use crate::fit::identifiability::{directions, in_words, trade};
 use crate::fit::interval::{IntervalDetail, IntervalMethod, independent_draws, mixes};
-use crate::fit::plan::{Plan, nuisance_name, sample_count};
+use crate::fit::plan::{Plan, sample_count};
 use crate::fit::solve::Solution;
 use crate::fit::types::{Estimate, Fit, PHASES, QuantityFit};
 use crate::fit::uncertainty::{runs_test, standardised};
@@ -37,7 +38,9 @@ impl Plan<'_> {
     pub(crate) fn report(&self, solution: &Solution, rig: &Rig) -> Result<Fit, Error> {
         let law = self.problem.kind.with_parameters(&solution.law)?;
         let samples: usize = self.noise.groups.iter().map(sample_count).sum();
-        let estimates = self.estimates(solution, &law, samples);
+        let mut estimates = self.estimates(solution, &law, samples);
+        let common = self.shifts_of_priors(solution, &estimates);
+        self.end_at_bounds(solution, &mut estimates, self.quantile(samples));
         let law_count = self.problem.free_positions().count();
         let simulated = simulate_rig(&law, rig, solution.velocity, self.options.end)?;
         let mut fit = Fit {
@@ -57,7 +60,7 @@ impl Plan<'_> {
             onset: self.impact.onset + solution.onset,
             offset: solution.offset,
             directions: directions(&solution.covariance),
-            common: Vec::new(),
+            common,
             intervals: self.interval_detail(solution),
             findings: self.findings.clone(),
         };
@@ -243,15 +246,17 @@ impl Plan<'_> {
             .filter(|(_, s)| **s != 0)
         {
             let lower = *side < 0;
+            let name = estimates[i].name.clone();
+            let given = self.problem.known(&name).is_some_and(|known| {
+                let end = if lower { known.range.0 } else { known.range.1 };
+                end.is_finite()
+            });
             out.push(Finding::AtBound {
-                parameter: estimates[i].name.clone(),
+                parameter: name,
                 side: if lower { "lower" } else { "upper" },
-                bound: if lower {
-                    self.free[i].lower
-                } else {
-                    self.free[i].upper
-                },
+                bound: estimates[i].value,
                 unit: estimates[i].unit.clone(),
+                given,
             });
         }
         out.extend(interval_remarks(&fit.intervals, &estimates));
@@ -282,6 +287,7 @@ impl Plan<'_> {
                 }
             }
         }
+        out.extend(self.remarks_on_priors(solution, &estimates));
         out.extend(self.weak_direction(solution, fit));
         out.extend(fit.quantities.iter().flat_map(quantity_remarks));
         if let Some(nominal) = fit.law.nominal_restitution() {

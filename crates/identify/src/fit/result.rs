@@ -10,7 +10,7 @@ use crate::rig::bench::{BenchQuantity, BenchSd};
 use crate::rig::kind::Rig;
 use windfall_signal::impact::Impact;
 
-pub use crate::fit::types::{CommonShift, Estimate, Fit, PHASES, QuantityFit};
+pub use crate::fit::types::{CommonCause, CommonShift, Estimate, Fit, PHASES, QuantityFit};
 
 /// Fits `problem` to `impact` as measured on `rig`.
 ///
@@ -21,7 +21,7 @@ pub use crate::fit::types::{CommonShift, Estimate, Fit, PHASES, QuantityFit};
 /// ```
 ///
 /// with the starred quantities from the rig's equation of motion under the
-/// law. Standard deviations come from the residuals' own variance and
+/// law, and for each prior (p − μ)² / σ². Standard deviations come from the residuals' own variance and
 /// correlation ([`covariance`](crate::fit::uncertainty::covariance)).
 ///
 /// # Errors
@@ -46,14 +46,19 @@ pub fn fit_impact(
         let asked = (impact, rig, problem, options);
         widen(&mut fit, asked, (quantity, sd), quantile);
     }
-    fit.findings.extend(match &fit.common[..] {
+    for finding in &mut fit.findings {
+        tell_data_alone(finding, impact, rig, (problem, options));
+    }
+    let of_bench = fit.common.iter().filter_map(CommonShift::of_bench);
+    let of_bench: Vec<(BenchQuantity, String)> = of_bench.collect();
+    fit.findings.extend(match &of_bench[..] {
         [] => None,
-        [one] if one.quantity == BenchQuantity::Mass => Some(Finding::UncertainMass {
-            mass: one.quantity.value(rig),
-            sd: one.sd,
+        [(BenchQuantity::Mass, _)] => Some(Finding::UncertainMass {
+            mass: BenchQuantity::Mass.value(rig),
+            sd: options.bench.of(BenchQuantity::Mass),
         }),
         all => Some(Finding::UncertainBench {
-            quantities: all.iter().map(CommonShift::words).collect(),
+            quantities: all.iter().map(|(_, words)| words.clone()).collect(),
         }),
     });
     Ok(fit)
@@ -102,6 +107,46 @@ pub fn fit_laws(
             Err(error) => Err(error.clone()),
         })
         .collect()
+}
+
+/// Replaces what a contradicted prior's finding says of the data alone, which is derived from
+/// noise that the prior itself made larger, by a fit without the prior.
+fn tell_data_alone(
+    finding: &mut Finding,
+    impact: &Impact,
+    rig: &Rig,
+    (problem, options): (&LawProblem, &FitOptions),
+) {
+    let Finding::PriorContradicted {
+        parameter,
+        prior,
+        data,
+        apart,
+        ..
+    } = finding
+    else {
+        return;
+    };
+    let mut without = problem.clone();
+    let known = without.known.iter_mut();
+    known
+        .filter(|known| known.name == *parameter)
+        .for_each(|known| known.prior = None);
+    let options = FitOptions {
+        bench: BenchSd::default(),
+        intervals: IntervalOptions::default(),
+        ..*options
+    };
+    let fit = fit_impact(impact, rig, &without, &options).ok();
+    let fit = fit.filter(|fit| fit.converged);
+    let own = fit.as_ref().and_then(|fit| {
+        let mut all = fit.parameters.iter().chain(&fit.nuisances);
+        all.find(|own| own.name == *parameter && own.sd.is_finite())
+    });
+    if let Some(own) = own {
+        *data = (own.value, own.sd);
+        *apart = (own.value - prior.0).abs() / own.sd.hypot(prior.1);
+    }
 }
 
 /// Adds the uncertainty of a quantity of the bench to the intervals, by fits with it one
@@ -168,7 +213,7 @@ fn widen(
         (estimate.low, estimate.high) = (estimate.value - low, estimate.value + high);
     }
     fit.common.push(CommonShift {
-        quantity,
+        cause: CommonCause::Bench(quantity),
         sd,
         shifts,
     });

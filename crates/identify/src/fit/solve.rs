@@ -16,7 +16,7 @@ use crate::samples::{QUANTITIES, SampleGroup};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::cholesky;
-use windfall_numerics::least_squares::{Minimum, Options, Stop};
+use windfall_numerics::least_squares::{Minimum, NormalEquations, Options, Stop};
 
 /// Longest step of a logarithmic and of a linear coordinate.
 const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
@@ -49,6 +49,11 @@ pub(crate) struct Solution {
     pub free: Vec<f64>,
     /// Covariance of the free parameters; empty when it is singular.
     pub covariance: Vec<Vec<f64>>,
+    /// Inverse of half the second derivatives of the cost by the free parameters; empty when
+    /// they are singular.
+    pub inverse: Vec<Vec<f64>>,
+    /// Half the gradient of the cost by the free parameters: zero but at bounds.
+    pub gradient: Vec<f64>,
     /// Velocity at first touch; m/s.
     pub velocity: f64,
     /// Time of first touch; s.
@@ -344,16 +349,24 @@ fn complete<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
     let slope = |i: usize| free[i].coordinate.slope(at[i]);
     let count = free.len();
-    let covariance =
-        covariance(&equations, &rows, estimator.groups(), offsets, count).map_or(vec![], |c| {
-            (0..count)
-                .map(|i| (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect())
-                .collect()
-        });
+    let in_si = |matrix: Option<[[f64; P]; P]>| -> Vec<Vec<f64>> {
+        let row = |c: &[[f64; P]; P], i: usize| -> Vec<f64> {
+            (0..count).map(|j| c[i][j] * slope(i) * slope(j)).collect()
+        };
+        matrix.map_or(vec![], |c| (0..count).map(|i| row(&c, i)).collect())
+    };
+    let mut priors = NormalEquations::ZERO;
+    estimator.add_priors(&minimum.parameters, 1, &mut priors);
+    let samples = (&rows, estimator.groups());
+    let covariance = covariance(&equations, samples, offsets, &priors, count);
     Some(Solution {
         law: values.law[..law_count].to_vec(),
-        free: at,
-        covariance,
+        inverse: in_si(equations.inverse(count)),
+        gradient: (0..count)
+            .map(|i| equations.gradient[i] / slope(i))
+            .collect(),
+        covariance: in_si(covariance),
+        free: at.clone(),
         velocity: values.velocity,
         onset: values.onset,
         offset: values.offset,

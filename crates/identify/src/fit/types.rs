@@ -55,11 +55,35 @@ pub struct QuantityFit {
 /// Parts of a contact in which residuals are averaged.
 pub const PHASES: usize = 8;
 
-/// What the uncertainty of one quantity of the bench moves: common to all impacts of the bench.
+/// What all impacts take from the same source, with the same error.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CommonCause {
+    /// A quantity of the bench.
+    Bench(BenchQuantity),
+    /// The prior of a parameter.
+    Prior {
+        /// The parameter.
+        parameter: String,
+        /// Its unit.
+        unit: String,
+    },
+}
+
+impl CommonCause {
+    /// Its name in results: "inertia", "prior.k".
+    pub fn name(&self) -> String {
+        match self {
+            Self::Bench(quantity) => quantity.name().to_owned(),
+            Self::Prior { parameter, .. } => format!("prior.{parameter}"),
+        }
+    }
+}
+
+/// What the uncertainty of a common cause moves: by the same in all impacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommonShift {
-    /// The quantity.
-    pub quantity: BenchQuantity,
+    /// The cause.
+    pub cause: CommonCause,
     /// Its standard uncertainty; SI.
     pub sd: f64,
     /// Change of each parameter, then of each nuisance, for one standard uncertainty more; SI.
@@ -67,10 +91,15 @@ pub struct CommonShift {
 }
 
 impl CommonShift {
-    /// "inertia ± 0.0002 kg m^2".
-    pub(crate) fn words(&self) -> String {
-        let unit = self.quantity.unit();
-        format!("{} ± {}", self.quantity.name(), Shown(self.sd, unit))
+    /// The quantity of the bench, if it is one, and "inertia ± 0.0002 kg m^2".
+    pub(crate) fn of_bench(&self) -> Option<(BenchQuantity, String)> {
+        match self.cause {
+            CommonCause::Bench(quantity) => {
+                let sd = Shown(self.sd, quantity.unit());
+                Some((quantity, format!("{} ± {sd}", quantity.name())))
+            }
+            CommonCause::Prior { .. } => None,
+        }
     }
 }
 
@@ -111,7 +140,7 @@ pub struct Fit {
     /// Combinations of parameters and nuisances, in their order, from the least to the
     /// best determined; empty where the covariance is singular.
     pub directions: Vec<Direction>,
-    /// What the uncertainties of the bench move; they are part of the deviations.
+    /// What the uncertainties of bench and priors move; they are part of the deviations.
     pub common: Vec<CommonShift>,
     /// How the intervals came about.
     pub intervals: IntervalDetail,

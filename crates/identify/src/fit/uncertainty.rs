@@ -32,10 +32,13 @@ const SMALLEST_INFLATION: f64 = 1.0;
 /// its weights say. s² is the mean square of a channel's residuals so
 /// standardised, λ its inflation by what correlation is left ([`inflation`]).
 ///
-/// * `equations`: N at the optimum, zeros taken out
+/// A channel whose noise the user gave has λ s² = 1, and so have priors, which add J Jᵀ / σ².
+///
+/// * `equations`: N at the optimum, zeros taken out, with priors
 /// * `rows`: residuals and Jacobian of each sample
 /// * `offsets`: standard uncertainty of each quantity's zero, as far as the
 ///   weights do not know it; SI. It adds u² g gᵀ to M, g = Σ w J.
+/// * `priors`: the part of N that is of priors
 /// * `parameters`: number of free parameters
 ///
 /// Returns C, or `None` when N is singular.
@@ -49,14 +52,14 @@ const SMALLEST_INFLATION: f64 = 1.0;
 /// sandwich with correlated errors.
 pub fn covariance<const P: usize>(
     equations: &NormalEquations<P>,
-    rows: &Rows,
-    groups: &[SampleGroup],
+    (rows, groups): (&Rows, &[SampleGroup]),
     offsets: &[f64; QUANTITIES],
+    priors: &NormalEquations<P>,
     parameters: usize,
 ) -> Option<[[f64; P]; P]> {
     let bread = equations.inverse(parameters)?;
     let freedom = rows.freedom_lost(parameters);
-    let mut meat = [[0.0; P]; P];
+    let mut meat = priors.normal;
     for (g, group) in groups.iter().enumerate() {
         for quantity in Quantity::ALL {
             let q = quantity as usize;
@@ -65,7 +68,10 @@ pub fn covariance<const P: usize>(
                 continue;
             }
             let z = standardised(group, quantity, residuals);
-            let variance = freedom * mean_square(&z) * inflation(&z);
+            let variance = match group.given[q] {
+                true => 1.0,
+                false => freedom * mean_square(&z) * inflation(&z),
+            };
             let jacobian = &rows.jacobian[g][q];
             add_meat(&mut meat, group, quantity, jacobian, variance, offsets[q]);
         }
@@ -128,7 +134,8 @@ pub(crate) fn whitened_zero(
     })
 }
 
-fn sandwich<const P: usize>(
+/// N⁻¹ M N⁻¹ of the first parameters.
+pub(crate) fn sandwich<const P: usize>(
     bread: &[[f64; P]; P],
     meat: &[[f64; P]; P],
     parameters: usize,
@@ -320,7 +327,14 @@ mod tests {
         for r in &residuals {
             equations.add(3.0, *r, &[1.0]);
         }
-        let found = covariance(&equations, &rows, &[group], &[0.0; 4], 1).unwrap()[0][0];
+        let found = covariance(
+            &equations,
+            (&rows, &[group]),
+            &[0.0; 4],
+            &NormalEquations::ZERO,
+            1,
+        )
+        .unwrap()[0][0];
         let expected = 1.0 / (1.0 - phi * phi) / n as f64 * (1.0 + phi) / (1.0 - phi);
         assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
         // Moving average x_i − x_(i−2): every correlation cancels but the ends'.

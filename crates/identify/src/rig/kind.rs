@@ -79,6 +79,20 @@ impl Rig {
         }
     }
 
+    /// Work of gravity or the driving acceleration on the way from first touch to a
+    /// displacement: m a x of a carriage, m g l (cos θ − 1) of a pendulum; J.
+    pub fn driving_work(&self, displacement: f64) -> f64 {
+        match self {
+            Self::Pendulum(rig) => {
+                let sine = displacement / rig.arm;
+                let weight = rig.mass * rig.gravity * rig.centre_of_mass;
+                // 1 − cos θ without cancellation.
+                -weight * sine * sine / (1.0 + (1.0 - sine * sine).max(0.0).sqrt())
+            }
+            Self::Carriage(rig) => rig.mass * rig.driving_acceleration * displacement,
+        }
+    }
+
     /// Velocity at the contact after a fall from the highest point of a pendulum,
     /// r (4 m g l / I)^½; m/s. `None` where it has no limit.
     pub fn largest_velocity(&self) -> Option<f64> {

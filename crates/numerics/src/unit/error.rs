@@ -85,6 +85,14 @@ pub enum UnitError {
         /// What is wrong.
         problem: &'static str,
     },
+    /// A range that cannot be read.
+    #[error("\"{text}\" is no range, since {problem}; write it like \"0 … 50 N s/m\" or \"> 0 N\"")]
+    BadRange {
+        /// What was to be read.
+        text: String,
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// An uncertainty where only a value is asked for.
     #[error("\"{text}\": this takes no ±: write the value alone")]
     NoUncertainty {

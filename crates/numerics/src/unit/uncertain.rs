@@ -62,7 +62,7 @@ pub fn parse_uncertain(text: &str, unit: &str) -> Result<(f64, Option<f64>), Uni
 }
 
 /// A text cut behind its number.
-fn number_and_unit(text: &str) -> (&str, &str) {
+pub(crate) fn number_and_unit(text: &str) -> (&str, &str) {
     let of_number = |c: char| c.is_ascii_digit() || "+-.eE".contains(c);
     let end = text.find(|c| !of_number(c)).unwrap_or(text.len());
     let (number, unit) = text.split_at(end);

@@ -1,10 +1,10 @@
 //! The result of `windfall laws`, as JSON shows it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 
 /// The result of `windfall laws`.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct LawsOutcome {
     /// Version of windfall.
     pub windfall: String,
@@ -17,7 +17,7 @@ pub struct LawsOutcome {
     /// Velocity levels among them.
     pub levels: usize,
     /// One word: "sure", "undecided" or "divided".
-    pub verdict: &'static str,
+    pub verdict: String,
     /// What the verdict means, in a sentence.
     pub meaning: String,
     /// Laws, the best first.
@@ -31,7 +31,7 @@ pub struct LawsOutcome {
 }
 
 /// Evidence of one impact for one law.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct ImpactEvidenceOutcome {
     /// The impact.
     pub id: String,
@@ -40,7 +40,7 @@ pub struct ImpactEvidenceOutcome {
 }
 
 /// Evidence for one law.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct LawEvidenceOutcome {
     /// The law.
     pub law: String,

@@ -4,12 +4,13 @@ use crate::ranking::figure::laws_painting;
 use crate::ranking::outcome::{ImpactEvidenceOutcome, LawEvidenceOutcome, LawsOutcome};
 use std::collections::BTreeMap;
 use std::path::Path;
+use windfall_campaign::impacts::answer::{Question, answer};
 use windfall_campaign::impacts::bench::find_rig;
 use windfall_campaign::impacts::figure_impact::figure_of_impact;
 use windfall_campaign::impacts::fit::law_problem;
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::pipeline::evaluate::failure;
-use windfall_campaign::pipeline::request::{FitRequest, apply_request};
+use windfall_campaign::pipeline::request::{FitRequest, Reuse, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::counted::left_out_under_all_laws;
 use windfall_campaign::result::fit_outcome::impact_outcome;
@@ -24,8 +25,9 @@ use windfall_files::on_threads::on_threads;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
+use windfall_identify::compare::levels::{LevelSource, velocity_levels};
 use windfall_identify::compare::ranking::{
-    LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws, velocity_levels,
+    LawEvidence, LawRanking, LeveledImpact, Verdict, fits_of_impact, rank_laws,
 };
 use windfall_identify::error::Error as IdentifyError;
 use windfall_identify::fit::problem::LawProblem;
@@ -43,9 +45,6 @@ pub const COMPARED: [&str; 6] = [
 ];
 /// Column of impacts.csv with the velocity level.
 const LEVEL_COLUMN: &str = "level";
-/// Velocities that differ by more than this part belong to different levels,
-/// where no column gives levels; 1.
-const LEVEL_GAP: f64 = 0.08;
 
 /// Ranks laws over the impacts of a campaign: those of the request, those of the
 /// campaign if it names at least two, else [`COMPARED`].
@@ -73,9 +72,7 @@ pub fn rank_campaign(
             .filter_map(|name| parse_law(name).ok())
             .collect();
     }
-    on_threads(request.threads, || {
-        rank(&campaign, request.figures.as_ref(), progress)
-    })
+    on_threads(request.threads, || rank(&campaign, request, progress))
 }
 
 /// What one recording gives.
@@ -87,22 +84,47 @@ struct Fitted {
     outcomes: Vec<ImpactOutcome>,
 }
 
+/// Figures are drawn of a comparison that is made now, of which the fits are at hand.
 fn rank(
     campaign: &ImpactCampaign,
-    figures: Option<&FigureFolder>,
+    request: &FitRequest,
     progress: Progress,
 ) -> Result<LawsOutcome, Error> {
     let mut campaign = campaign.clone();
+    let priors = campaign.fit.without_priors();
     let rig = find_rig(&mut campaign)?;
-    let campaign = &campaign;
+    let question = Question {
+        campaign: &campaign,
+        rig: &rig,
+        command: "laws",
+        options: String::new(),
+    };
+    let figures = request.figures.as_ref();
+    let reuse = match figures {
+        Some(_) => Reuse::Nothing,
+        None => request.reuse,
+    };
+    let work = || compared(&campaign, &rig, figures, progress);
+    let (mut outcome, told) = answer(&question, reuse, work)?;
+    outcome.findings.extend(told);
+    outcome.findings.extend(priors);
+    Ok(outcome)
+}
+
+fn compared(
+    campaign: &ImpactCampaign,
+    rig: &RigFound,
+    figures: Option<&FigureFolder>,
+    progress: Progress,
+) -> Result<LawsOutcome, Error> {
     let problems: Vec<LawProblem> = campaign
         .fit
         .laws
         .iter()
-        .map(|law| law_problem(law, &campaign.fit.free))
+        .map(|law| law_problem(law, &campaign.fit))
         .collect();
     let results = for_each(progress, campaign.shared.entries.len(), |item| {
-        fits(campaign, &campaign.shared.entries[item], &rig, &problems)
+        fits(campaign, &campaign.shared.entries[item], rig, &problems)
     })?;
     let (mut impacts, mut fitted, mut entries, mut failed) = (vec![], vec![], vec![], vec![]);
     let outcomes = results.iter().flatten().flat_map(|own| &own.outcomes);
@@ -139,7 +161,7 @@ fn rank(
     if let Some(folder) = figures {
         write_paintings(folder, &[laws_painting(&outcome)?])?;
         if let Some(place) = shown {
-            draw_impact(campaign, &rig, entries[place], &problems, &outcome, folder)?;
+            draw_impact(campaign, rig, entries[place], &problems, &outcome, folder)?;
         }
     }
     Ok(outcome)
@@ -147,13 +169,16 @@ fn rank(
 
 /// Of the impacts that are compared the one with the middle velocity.
 fn middle_impact(compared: &[usize], fits: &[Vec<Option<Fit>>]) -> Option<usize> {
-    let velocity = |place: usize| {
-        let fit = fits[place].iter().find_map(Option::as_ref);
-        fit.map_or(f64::NAN, |fit| fit.velocity)
-    };
     let mut order = compared.to_vec();
-    order.sort_by(|a, b| velocity(*a).total_cmp(&velocity(*b)));
+    order.sort_by(|a, b| velocity(&fits[*a]).total_cmp(&velocity(&fits[*b])));
     order.get(order.len() / 2).copied()
+}
+
+/// Impact velocity by the law that fits best; m/s.
+fn velocity(fits: &[Option<Fit>]) -> f64 {
+    let found = fits.iter().flatten();
+    let best = found.min_by(|a, b| a.cost.total_cmp(&b.cost));
+    best.map_or(f64::NAN, |fit| fit.velocity)
 }
 
 /// One impact with the best fit of each law over its signals, the best law first.
@@ -223,7 +248,7 @@ fn fits(
     })
 }
 
-/// Levels from the column of impacts.csv, else from the velocities.
+/// Levels from the column of impacts.csv, else from the velocities; says what became of them.
 fn set_levels(
     impacts: &mut [LeveledImpact],
     entries: &[&ImpactEntry],
@@ -237,38 +262,48 @@ fn set_levels(
             .map(|(_, cell)| cell.clone())
     };
     let cells: Option<Vec<String>> = entries.iter().map(|entry| cell(entry)).collect();
-    let levels = match cells {
-        Some(cells) => {
-            let mut numbers = BTreeMap::new();
-            cells
-                .into_iter()
-                .map(|cell| {
-                    let next = numbers.len();
-                    *numbers.entry(cell).or_insert(next)
-                })
-                .collect()
-        }
-        None => {
-            let velocities: Vec<f64> = fits
-                .iter()
-                .map(|fits| {
-                    let fit = fits.iter().find_map(Option::as_ref);
-                    fit.map_or(f64::NAN, |fit| fit.velocity)
-                })
-                .collect();
-            velocity_levels(&velocities, LEVEL_GAP)
-        }
-    };
-    for (impact, level) in impacts.iter_mut().zip(&levels) {
+    let given = cells.map(|cells| {
+        let mut numbers = BTreeMap::new();
+        let numbered = cells.into_iter().map(|cell| {
+            let next = numbers.len();
+            *numbers.entry(cell).or_insert(next)
+        });
+        numbered.collect()
+    });
+    let velocities: Vec<f64> = fits.iter().map(|own| velocity(own)).collect();
+    let levels = velocity_levels(&velocities, given);
+    for (impact, level) in impacts.iter_mut().zip(&levels.of) {
         impact.level = *level;
     }
-    if levels.iter().all(|level| *level == 0) {
+    if levels.source == LevelSource::Thirds {
+        findings.push(FindingOutcome::new(
+            "velocity-thirds",
+            thirds_text(&velocities, &levels.of),
+        ));
+    }
+    if levels.of.iter().all(|level| *level == 0) {
         findings.push(FindingOutcome::new(
             "one-level",
             "all impacts have the same velocity, so prediction at other velocities \
              cannot be tested; laws that differ only in velocity look alike",
         ));
     }
+}
+
+fn thirds_text(velocities: &[f64], levels: &[usize]) -> String {
+    let range = |level: usize| {
+        let own = || velocities.iter().zip(levels).filter(|own| *own.1 == level);
+        let low = own().map(|own| *own.0).fold(f64::INFINITY, f64::min);
+        let high = own().map(|own| *own.0).fold(0.0, f64::max);
+        format!("{} impacts at {low:.3} to {high:.3} m/s", own().count())
+    };
+    format!(
+        "the velocities are continuous, so each third of them is predicted from the two others: \
+         {}, {}, {}",
+        range(0),
+        range(1),
+        range(2)
+    )
 }
 
 /// Ranks the laws over some of the impacts.
@@ -315,7 +350,7 @@ fn outcome(
         simulated: campaign.shared.simulated.clone(),
         impacts: ranking.impacts,
         levels: ranking.levels,
-        verdict,
+        verdict: verdict.to_owned(),
         meaning,
         laws: ranking
             .laws

@@ -6,3 +6,4 @@ pub mod posterior;
 pub mod profiles;
 pub mod residuals;
 pub mod stacked;
+pub mod trends;

@@ -36,10 +36,12 @@ pub(crate) fn ends() -> PossibleValuesParser {
 }
 
 /// Reads what all impacts have.
+///
+/// * `velocity`: at first touch; m/s
 pub(crate) fn event(
     (law, laws): (&str, Option<&Path>),
     rig: Rig,
-    velocity: &str,
+    velocity: f64,
     end: &str,
 ) -> Result<Event, Error> {
     let asked = chosen_law(law, laws)?;
@@ -47,7 +49,7 @@ pub(crate) fn event(
         law: asked.law,
         range: asked.range,
         rig,
-        velocity: positive("--velocity", velocity, "m/s")?,
+        velocity,
         end: chosen("--end", end, &ENDS)?,
     })
 }

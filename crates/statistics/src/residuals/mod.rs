@@ -6,3 +6,4 @@ pub mod diagnostics;
 pub mod heteroscedasticity;
 pub mod normality;
 pub mod order;
+pub mod trend;

@@ -34,6 +34,9 @@ pub struct LawsArguments {
     /// The comparison, and one impact with the best fit of each law
     #[command(flatten)]
     pub figures: Option<FigureFolder>,
+    /// Find the answer anew, even where nothing has changed since it was found
+    #[arg(long)]
+    pub refit: bool,
     /// Threads; all cores if left out
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

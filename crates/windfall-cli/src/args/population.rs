@@ -49,6 +49,9 @@ pub struct PopulationArguments {
     /// Write the population as a law card (TOML, or JSON where the name ends with .json)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub card: Option<PathBuf>,
+    /// Find the answer anew, even where nothing has changed since it was found
+    #[arg(long)]
+    pub refit: bool,
     /// Number of threads; all cores if left out. It never changes a result
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,

@@ -87,6 +87,7 @@ pub struct SimulateRepeatsArguments {
 #[command(after_help = "Example:
   windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --velocity '0.5 m/s'
   windfall simulate impact --law 'hertz(k=753599)' --mass '0.2 kg' --velocity '0.5 m/s' --plot hertz.svg
+  windfall simulate impact --law 'kuwabara-kono(k=753599, c=1524)' --mass '0.2 kg' --height '0.1 m'
   windfall simulate impact --law 'adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")' \\
       --mass '4.8 g' --velocity '3.13 m/s' --format json")]
 pub struct SimulateImpactArguments {

@@ -3,7 +3,7 @@
 use crate::args::laws::LawsArguments;
 use crate::command::fit::with_bar;
 use crate::show::{show, tell_unused};
-use windfall_campaign::pipeline::request::FitRequest;
+use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_population::ranking::run::rank_campaign;
 use windfall_population::ranking::text::{csv_of_laws, text_of_laws};
 
@@ -14,6 +14,11 @@ pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
         free: arguments.free.clone(),
         quantities: arguments.quantities.clone(),
         figures: arguments.figures.clone(),
+        reuse: if arguments.refit {
+            Reuse::Nothing
+        } else {
+            Reuse::Unchanged
+        },
         threads: arguments.threads,
         ..FitRequest::default()
     };

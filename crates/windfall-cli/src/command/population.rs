@@ -4,7 +4,7 @@ use crate::args::format::Format;
 use crate::args::population::PopulationArguments;
 use crate::command::fit::with_bar;
 use crate::show::{message, tell_failures, write_json, write_result};
-use windfall_campaign::pipeline::request::FitRequest;
+use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_cards::read_card::write_card;
 use windfall_population::card::card_of_population;
 use windfall_population::run::{PopulationRequest, population};
@@ -17,6 +17,11 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         fit: FitRequest {
             laws: arguments.law.iter().cloned().collect(),
             free: arguments.free.clone(),
+            reuse: if arguments.refit {
+                Reuse::Nothing
+            } else {
+                Reuse::Unchanged
+            },
             threads: arguments.threads,
             draws: arguments.draws,
             seed: arguments.seed,

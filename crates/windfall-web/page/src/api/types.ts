@@ -8,7 +8,9 @@ export interface AlongOutcome { quantity: string; known: MeasuredValue; value: n
 export interface AnovaOutcome { term: string; ss: number | null; df: number; f: number; p: number; }
 export type AnyOutcome = CampaignOutcome | MeasuredOutcome;
 export type AnyRegressOutcome = RegressOutcome | MixedOutcome;
-export interface BenchOutcome { value: number; sd: number; unit: string; told: number; impacts: number; }
+export interface BenchOutcome {
+  value: number; sd: number; unit: string; told: number | null; impacts: number;
+}
 export interface Bounds { low: [number, number, number]; high: [number, number, number]; }
 export interface BoxCoxOutcome { lambda: number; low: number | null; high: number | null; }
 export interface BruiseOutcome { limits: LimitOutcome[]; mean_largest: number; places: PlaceOutcome[]; }
@@ -28,9 +30,9 @@ export interface CampaignEntry {
 }
 export interface CampaignOutcome {
   windfall: string; campaign: string; simulated: string | null; effective_mass: MassOutcome;
-  bench: Record<string, PooledOutcome>; estimated: Record<string, BenchOutcome>; status: StatusOutcome;
-  impacts: ImpactOutcome[]; failed: FailureOutcome[]; summary: Record<string, SpreadOutcome>; groups: GroupOutcome[];
-  findings: FindingOutcome[];
+  bench: Record<string, PooledOutcome>; estimated: Record<string, BenchOutcome>; trends: TrendOutcome[];
+  status: StatusOutcome; impacts: ImpactOutcome[]; failed: FailureOutcome[]; summary: Record<string, SpreadOutcome>;
+  groups: GroupOutcome[]; findings: FindingOutcome[];
 }
 export interface CampaignView {
   id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
@@ -385,6 +387,10 @@ export interface TermOutcome {
 }
 export interface TestOutcome { test: string; statistic: number; p: number; }
 export interface TextGiven { text: string; }
+export interface TrendOutcome {
+  law: string; quantity: string; over: string; slope: number; sd: number; range: number; p: number; impacts: number;
+  specimens: number; within_specimens: boolean; order_correlation: number;
+}
 export interface TwoStageOutcome {
   medians: RangeOutcome[]; between: RangeOutcome[]; correlations: number[]; effects: PopulationEffect[];
 }
