@@ -126,10 +126,10 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        7,
+        8,
         [
-            "d5b59bc05a3a5fcd",
-            "9a207a02b8cbdb1e",
+            "9c72f59574e33e9d",
+            "ea543ccca8603f72",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",
