@@ -1,5 +1,6 @@
 //! Fits of many impacts side by side against fits one by one: the same bits,
-//! whatever the number, the order and the neighbours; and nothing allocated.
+//! whatever the number, the order and the neighbours; and nothing allocated but what a
+//! fit's condensed samples need.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -19,6 +20,8 @@ use windfall_identify::samples::SampleGroup;
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
 use windfall_numerics::ode::step::Tolerance;
 
+/// Vectors of a fit's condensed samples, which are made twice.
+const ALLOCATIONS: u64 = 12;
 /// Standard deviations of displacement, rate and force: a pendulum's.
 const NOISE: [f64; 3] = [5e-6, 3e-3, 0.3];
 
@@ -201,7 +204,8 @@ fn compare<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
         .collect();
     let mut together = vec![Minimum::NONE; problems.len()];
     let allocated = allocation_counter::measure(|| minimise_batch(&problems, &mut together));
-    assert_eq!(allocated.count_total, 0);
+    let most = ALLOCATIONS * problems.len() as u64;
+    assert!(allocated.count_total <= most, "{allocated:?}");
     for (i, problem) in problems.iter().enumerate() {
         let alone = problem.estimator.clone().minimise(&problem.options);
         assert_eq!(together[i], alone, "impact {i}");
@@ -264,7 +268,7 @@ fn repeats_single_fits_and_recovers_two_parameters() {
     }
 }
 
-/// Four columns, the onset among them: no approach with a share of the samples.
+/// Four columns, the onset among them: samples are condensed, not left out.
 #[test]
 fn repeats_single_fits_with_velocity_and_onset() {
     let law = KuwabaraKono { k: 1e5, c: 100.0 };

@@ -1,6 +1,7 @@
 //! Residuals of an impact and their derivatives, summed into the normal
 //! equations in one pass over the samples, several samples at a time.
 
+use crate::fit::condensed::Bends;
 use crate::fit::model::Model;
 use crate::fit::onset_average::{OnsetAverage, OnsetCorrection};
 use crate::fit::residual_noise::Noise;
@@ -46,12 +47,20 @@ pub fn evaluate<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize
     groups: &[SampleGroup],
     rows: Option<&mut Rows>,
 ) -> Result<NormalEquations<P>, StepError> {
-    pass(model, groups, rows, 1)
+    pass(model, groups, rows, 1).map(|found| found.equations)
+}
+
+/// What an evaluation finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<const P: usize> {
+    pub(crate) equations: NormalEquations<P>,
+    /// Where the model has corners.
+    pub(crate) bends: Bends,
 }
 
 /// [`evaluate`] with a share of the samples and as if their noise were white, for
 /// the way to the minimum: every `stride`-th pack of them, the same ones wherever
-/// the pieces of the motion end.
+/// the pieces of the motion end. A stride of 1 is all of them, with their noise.
 ///
 /// # Errors
 /// [`StepError`] when the motion cannot be integrated.
@@ -59,7 +68,7 @@ pub(crate) fn evaluate_some<L: ContactLaw<N>, const N: usize, const W: usize, co
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
     stride: usize,
-) -> Result<NormalEquations<P>, StepError> {
+) -> Result<Found<P>, StepError> {
     pass(model, groups, None, stride)
 }
 
@@ -70,7 +79,7 @@ fn pass<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     groups: &[SampleGroup],
     rows: Option<&mut Rows>,
     stride: usize,
-) -> Result<NormalEquations<P>, StepError> {
+) -> Result<Found<P>, StepError> {
     pulp::Arch::new().dispatch(Pass {
         model,
         groups,
@@ -90,7 +99,7 @@ struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
 impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::WithSimd
     for Pass<'_, L, N, W, P>
 {
-    type Output = Result<NormalEquations<P>, StepError>;
+    type Output = Result<Found<P>, StepError>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
@@ -113,7 +122,7 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::Wit
         follow(&model.event, before, after, &mut |segment, piece| {
             reading.read(segment, piece);
         })?;
-        Ok(tally.total(groups, stride))
+        Ok(tally.total(model.onset, groups, stride))
     }
 }
 
@@ -134,22 +143,35 @@ pub(crate) fn span<L, const N: usize, const W: usize, const P: usize>(
 pub(crate) struct Tally<const P: usize> {
     sums: Sums<Pack, P>,
     noise: Noise<P>,
+    /// End of the last piece of contact; s from first touch.
+    contact_end: f64,
 }
 
 impl<const P: usize> Tally<P> {
     pub(crate) const EMPTY: Self = Self {
         sums: Sums::ZERO,
         noise: Noise::NONE,
+        contact_end: 0.0,
     };
 
     /// The normal equations, after the last piece.
     #[inline(always)]
-    pub(crate) fn total(&mut self, groups: &[SampleGroup], stride: usize) -> NormalEquations<P> {
+    pub(crate) fn total(&mut self, onset: f64, groups: &[SampleGroup], stride: usize) -> Found<P> {
         let mut equations = self.sums.total();
+        for group in groups {
+            let parts = group.weights.iter().zip(&group.remainder);
+            equations.cost += parts.map(|(weight, rest)| weight * rest).sum::<f64>();
+        }
         if stride == 1 {
             self.noise.complete(groups, &mut equations);
         }
-        equations
+        Found {
+            equations,
+            bends: Bends {
+                touch: onset,
+                separation: Some(onset + self.contact_end),
+            },
+        }
     }
 }
 
@@ -188,6 +210,9 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
 impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> Reading<'_, L, N, W, P> {
     #[inline(never)]
     fn read(&mut self, segment: &Segment<W>, piece: Piece) {
+        if piece == Piece::Contact {
+            self.tally.contact_end = segment.to;
+        }
         with_four_lanes(ReadPiece {
             reading: self,
             segment,
@@ -265,7 +290,8 @@ struct PackAt<R> {
     at: usize,
     /// How many there are: [`PACK`] but where the range begins or ends.
     count: usize,
-    /// 1 in the lanes that hold a sample, 0 in the others.
+    /// How often the sample in each lane counts: once, or for a stretch of samples; 0
+    /// where there is none.
     counted: R,
 }
 
@@ -323,11 +349,11 @@ where
             if let (false, Some(average)) = (SIMPLE, self.average) {
                 piece.correct_onset(&mut found, times, average);
             }
-            let pack = PackAt {
-                at,
-                count,
-                counted: zero.with_plain(COUNTED[count]),
-            };
+            let mut counted = zero.with_plain(COUNTED[count]);
+            if !group.shares.is_empty() {
+                counted = counted * zero.with_plain(load(&group.shares, at));
+            }
+            let pack = PackAt { at, count, counted };
             // Written out: an index known to the compiler keeps the model in registers.
             self.add::<0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
             self.add::<1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
