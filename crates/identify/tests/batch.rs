@@ -17,7 +17,7 @@ use windfall_identify::fit::model::Sampling;
 use windfall_identify::rig::kind::{Carriage, Pendulum, Rig};
 use windfall_identify::rig::motion::Motion;
 use windfall_identify::samples::SampleGroup;
-use windfall_numerics::least_squares::{Minimum, Options, Stop};
+use windfall_numerics::least_squares::{Minimum, Options, Stop, minimise};
 use windfall_numerics::ode::step::Tolerance;
 
 /// Vectors of a fit's condensed samples, which are made twice.
@@ -274,6 +274,36 @@ fn repeats_single_fits_with_velocity_and_onset() {
     let law = KuwabaraKono { k: 1e5, c: 100.0 };
     let found = compare::<_, 2, 4, 4>(law, kuwabara_kono, [1.5e5, 250.0]);
     assert!(found.iter().any(|minimum| minimum.stop == Stop::Converged));
+}
+
+/// Where fits with condensed samples end, the minimiser that is given all samples at once
+/// finds nothing left to gain.
+#[test]
+fn converges_at_the_minimum_of_all_samples() {
+    let law = KuwabaraKono { k: 1e5, c: 100.0 };
+    let free = free();
+    let mut compared = 0;
+    for (i, case) in cases().iter().enumerate() {
+        let truth = kuwabara_kono(i);
+        let groups = [recording(case, law.with_values(truth), truth, i)];
+        let start = case.values([1.5e5, 250.0]);
+        let mut estimator =
+            Estimator::<_, 2, 4, 4>::new(law, case.setting(), &groups, &free, start);
+        let found = estimator.minimise(&options());
+        let bounds = estimator.bounds();
+        let all = minimise(&mut estimator, &found.parameters, &bounds, &options());
+        if [found.stop, all.stop] != [Stop::Converged; 2] {
+            continue;
+        }
+        compared += 1;
+        let covariance = all.equations.inverse(4).unwrap();
+        for p in 0..4 {
+            let off = (found.parameters[p] - all.parameters[p]).abs();
+            let sd = covariance[p][p].sqrt();
+            assert!(off < 1e-3 * sd, "impact {i}, parameter {p}: {off} of {sd}");
+        }
+    }
+    assert!(compared > 5, "{compared}");
 }
 
 /// Laws that go through lanes one by one (Hunt-Crossley), and laws with history or

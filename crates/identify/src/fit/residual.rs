@@ -250,15 +250,20 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> FourLanes
             }
             let mut rows = rows.as_deref_mut().map(|rows| (rows, index));
             // Only contact and the flight before touch the onset.
-            let average = OnsetAverage::new(model, group)
-                .filter(|_| self.piece == Piece::Contact || self.segment.to <= 0.0);
-            // The acceleration matters to a recorded one and to the onset's column.
+            let average = OnsetAverage::new(model, group).filter(|average| {
+                let touched = self.piece == Piece::Contact || self.segment.to <= 0.0;
+                touched && self.segment.from < average.until()
+            });
+            // The acceleration matters to a recorded one and to the onset's column, but
+            // not to that of the displacement.
+            let rests = group.holds(Quantity::Rate) || group.holds(Quantity::Force);
             let accelerated = group.holds(Quantity::Acceleration)
-                || model.columns.onset.iter().any(|onset| *onset != 0.0);
+                || rests && model.columns.onset.iter().any(|onset| *onset != 0.0);
+            let force = accelerated || group.holds(Quantity::Force);
             let share = Share {
                 zero,
                 piece: PieceModel::new(model, self.segment, accelerated),
-                contact: self.piece == Piece::Contact,
+                force: force && self.piece == Piece::Contact,
                 group,
                 range,
                 stride: *stride,
@@ -274,8 +279,8 @@ struct Share<'a, L, R, const N: usize, const W: usize, const P: usize> {
     /// A number of the kind to calculate with.
     zero: R,
     piece: PieceModel<'a, L, N, W, P>,
-    /// Whether the bodies touch during the piece.
-    contact: bool,
+    /// Whether there is a force that matters.
+    force: bool,
     group: &'a SampleGroup,
     /// Indices of the first and behind the last.
     range: (usize, usize),
@@ -306,10 +311,8 @@ where
         if stride == 1 {
             tally.noise.begin(self.range.0);
         }
-        let simple = (stride > 1 || (0..QUANTITIES).all(|q| group.is_white(q)))
-            && group.relative.iter().all(Vec::is_empty)
-            && self.average.is_none()
-            && rows.is_none();
+        let persistent = group.persistence.iter().any(|own| *own != 0.0);
+        let simple = (stride > 1 || !persistent) && self.average.is_none() && rows.is_none();
         match simple {
             true => self.read_packs::<true>(tally, rows),
             false => self.read_packs::<false>(tally, rows),
@@ -319,8 +322,8 @@ where
         }
     }
 
-    /// `SIMPLE` samples have white noise of one variance, are taken at their
-    /// instant, and nothing but sums is wanted.
+    /// `SIMPLE` samples have noise that does not persist, are taken at their instant,
+    /// and nothing but sums is wanted.
     #[inline(always)]
     fn read_packs<const SIMPLE: bool>(
         &self,
@@ -345,7 +348,7 @@ where
             // The roots of the next pack run beside what follows from this one.
             let next_times = load(&group.times, next.min(group.len));
             let next_place = piece.place(zero.with_plain(next_times));
-            let mut found = piece.at(place, self.contact);
+            let mut found = piece.at(place, self.force);
             if let (false, Some(average)) = (SIMPLE, self.average) {
                 piece.correct_onset(&mut found, times, average);
             }
@@ -382,7 +385,7 @@ where
         }
         let zero = pack.counted;
         let mut weight = pack.counted * group.weights[Q];
-        if !SIMPLE && !group.relative[Q].is_empty() {
+        if !group.relative[Q].is_empty() {
             weight = weight * zero.with_plain(load(&group.relative[Q], pack.at));
         }
         let mut residual = found.values[Q] - zero.with_plain(load(&group.values[Q], pack.at));
@@ -393,6 +396,8 @@ where
             weight = zero.with_plain(row.0);
             residual = zero.with_plain(row.1);
             jacobian = zero.with_each_plain(row.2);
+        } else if SIMPLE && self.stride == 1 && group.zero_sd[Q] > 0.0 {
+            noise.zeros[Q].add(weight, 1.0, residual, &jacobian);
         }
         sums.add(weight, residual, &jacobian);
     }
