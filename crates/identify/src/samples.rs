@@ -48,6 +48,18 @@ impl Quantity {
     }
 }
 
+/// How far a sample of an even spacing may be from its place; intervals.
+const EVEN: f64 = 1e-3;
+
+/// Whether times are an interval apart each, but for rounding and jitter that does not
+/// matter.
+fn evenly_spaced(times: &[f64], interval: f64) -> bool {
+    let first = times.first().copied().unwrap_or(0.0);
+    let off = |(i, time): (usize, &f64)| (time - (first + i as f64 * interval)).abs();
+    let largest = times.iter().enumerate().map(off).fold(0.0, f64::max);
+    interval > 0.0 && largest <= EVEN * interval
+}
+
 /// Samples of one or more quantities taken at the same times.
 #[derive(Clone, Debug)]
 pub struct SampleGroup {
@@ -64,6 +76,15 @@ pub struct SampleGroup {
     pub(crate) relative: [Vec<f64>; QUANTITIES],
     /// Correlation of the noise of successive samples of each quantity; 1.
     pub(crate) persistence: [f64; QUANTITIES],
+    /// Recorded samples that each sample stands for, padded; empty where all are 1.
+    pub(crate) shares: Vec<f64>,
+    /// Sum of squares of each quantity that no model of these samples changes, without
+    /// its weight; SI.
+    pub(crate) remainder: [f64; QUANTITIES],
+    /// Mean time between recorded samples; s.
+    pub(crate) interval: f64,
+    /// Whether all are this far apart.
+    pub(crate) even: bool,
     /// Standard uncertainty of the zero that all samples of a quantity share; SI.
     pub(crate) zero_sd: [f64; QUANTITIES],
     /// Whether samples are means over the interval between them.
@@ -82,12 +103,20 @@ impl SampleGroup {
             out.resize(slice.len() + PACK, 0.0);
             out
         };
+        let interval = match times {
+            [first, .., last] => (last - first) / (times.len() - 1) as f64,
+            _ => 0.0,
+        };
         Self {
             len: times.len(),
             times: padded(times),
             values: values.map(|v| v.map_or_else(Vec::new, |(samples, _)| padded(samples))),
             weights: values.map(|v| v.map_or(0.0, |(_, weight)| weight)),
             relative: Default::default(),
+            shares: Vec::new(),
+            remainder: [0.0; QUANTITIES],
+            interval,
+            even: evenly_spaced(times, interval),
             persistence: [0.0; QUANTITIES],
             zero_sd: [0.0; QUANTITIES],
             means: false,
@@ -173,12 +202,9 @@ impl SampleGroup {
         &self.times[..self.len]
     }
 
-    /// Mean time between samples; s. Zero for a single sample.
+    /// Mean time between recorded samples; s. Zero for a single sample.
     pub fn interval(&self) -> f64 {
-        match self.times() {
-            [first, .., last] => (last - first) / (self.len - 1) as f64,
-            _ => 0.0,
-        }
+        self.interval
     }
 
     /// Whether it holds samples of `quantity`.

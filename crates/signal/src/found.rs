@@ -12,7 +12,7 @@ use crate::recording::Recording;
 use crate::spike::remove_spikes;
 use crate::track::{Geometry, Track, Tracks, mean_interval, missing, tracks};
 use crate::trigger::{Baseline, Contacts, Signal, Threshold, TriggerOptions, find_contacts};
-use crate::zero::level_zero;
+use crate::zero::{Levelled, level_zero};
 
 /// The contacts of a recording that [`crate::extract_impact`] chooses between, in order of time.
 ///
@@ -56,7 +56,7 @@ pub(crate) fn found(
         remove_spikes(track, findings);
     }
     filter_tracks(&mut tracks, &options.conditioning, findings)?;
-    let mut trend_sd = 0.0;
+    let mut levelled = Levelled::default();
     if let Some(force) = &mut tracks.force {
         let find = |force: &Track| {
             find_contacts(
@@ -64,12 +64,15 @@ pub(crate) fn found(
                 &options.trigger,
             )
         };
-        trend_sd = level_zero(force, &options.trigger, find, findings)?;
+        levelled = level_zero(force, &options.trigger, find, findings)?;
     }
 
-    let (contacts, from_motion) = contacts(recording, &tracks, options)?;
+    let (contacts, from_motion) = match levelled.contacts {
+        Some(contacts) => (contacts, None),
+        None => contacts(recording, &tracks, options)?,
+    };
     let contacts = Contacts {
-        trend_sd: contacts.trend_sd.hypot(trend_sd),
+        trend_sd: contacts.trend_sd.hypot(levelled.sd),
         ..contacts
     };
     let turns = candidates(&contacts, &tracks, findings)?;

@@ -150,8 +150,16 @@ fn widened<const P: usize>(fit: &LinearFit<P>) -> LinearFit<TERMS> {
     }
 }
 
-/// Subtracts what the zero of a force does beside staying, and returns the standard
-/// uncertainty that this leaves in the zero during contact; N.
+/// What is known of a force whose zero is level.
+#[derive(Debug, Default)]
+pub(crate) struct Levelled {
+    /// Standard uncertainty that levelling leaves in the zero during contact; N.
+    pub sd: f64,
+    /// Its contacts, if they were looked for in the force as it is now.
+    pub contacts: Option<Contacts>,
+}
+
+/// Subtracts what the zero of a force does beside staying.
 ///
 /// The zero is a constant, a line, or a line and a sine of the mains. The next is taken only
 /// where the quiet samples near the contact ask for it decisively, so that a zero that stays
@@ -166,9 +174,9 @@ pub(crate) fn level_zero(
     trigger: &TriggerOptions,
     find: impl Fn(&Track) -> Result<Contacts, Error>,
     findings: &mut Vec<Finding>,
-) -> Result<f64, Error> {
+) -> Result<Levelled, Error> {
     if trigger.baseline == Baseline::Keep {
-        return Ok(0.0);
+        return Ok(Levelled::default());
     }
     let forced = trigger.baseline == Baseline::Drift;
     let recorded = track.values.clone();
@@ -198,7 +206,10 @@ pub(crate) fn level_zero(
             before: early,
             after: late,
         });
-        return Ok(0.0);
+        return Ok(Levelled {
+            sd: 0.0,
+            contacts: guess.is_none().then_some(contacts),
+        });
     }
     // The shape is chosen, and told, of the force as it was recorded.
     let window = contacts.windows[used];
@@ -222,12 +233,18 @@ pub(crate) fn level_zero(
                 };
             }
             tell(track, &zero, findings);
-            Ok(zero.sd(0.5 * (window.onset + window.end)))
+            Ok(Levelled {
+                sd: zero.sd(0.5 * (window.onset + window.end)),
+                contacts: None,
+            })
         }
         _ => {
             findings.extend(shift(track, &recorded, &quiet, window.peak));
             track.values = recorded;
-            Ok(0.0)
+            Ok(Levelled {
+                sd: 0.0,
+                contacts: guess.is_none().then_some(contacts),
+            })
         }
     }
 }

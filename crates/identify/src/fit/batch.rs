@@ -10,9 +10,9 @@ use crate::fit::batch_law::{BatchLaw, IMPACTS};
 use crate::fit::batch_motion::{Impacts, Next, Way, attempt_all};
 use crate::fit::estimator::Estimator;
 use crate::fit::model::Model;
-use crate::fit::residual::{Tally, read_piece, span};
-use crate::fit::search::Search;
-use windfall_numerics::least_squares::{Minimum, NormalEquations, Options};
+use crate::fit::residual::{Found, Tally, read_piece, span};
+use crate::fit::search::{Search, Share};
+use windfall_numerics::least_squares::{Minimum, Options};
 use windfall_numerics::ode::lockstep::{Lockstep, Outcome};
 
 /// One impact to fit.
@@ -33,7 +33,7 @@ pub struct BatchProblem<'a, L, const N: usize, const W: usize, const P: usize> {
 ///
 /// # Numerics
 /// [`IMPACTS`] impacts at a time. Laws with history or with a kink are integrated
-/// one by one. Nothing is allocated.
+/// one by one. Nothing is allocated but the condensed samples of a fit.
 pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
     problems: &[BatchProblem<L, N, W, P>],
     minima: &mut [Minimum<P>],
@@ -72,14 +72,13 @@ struct Batch<L: BatchLaw<N>, const N: usize, const W: usize> {
 struct Slot<'p, 'a, L, const N: usize, const W: usize, const P: usize> {
     problem: &'p BatchProblem<'a, L, N, W, P>,
     minimum: &'p mut Minimum<P>,
-    search: Search<P>,
+    search: Search<'a, P>,
     run: Option<Run<L, N, W, P>>,
 }
 
 /// One evaluation of an impact.
 struct Run<L, const N: usize, const W: usize, const P: usize> {
     model: Model<L, N, W, P>,
-    stride: usize,
     end: f64,
     way: Way,
     tally: Tally<P>,
@@ -111,12 +110,12 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
                 });
                 continue;
             };
-            let Some((u, stride)) = fit.search.propose() else {
+            let Some(u) = fit.search.propose() else {
                 *fit.minimum = fit.search.minimum();
                 *slot = None;
                 continue;
             };
-            if self.begin(lane, fit, &u, stride) {
+            if self.begin(lane, fit, &u) {
                 return;
             }
         }
@@ -128,22 +127,22 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
         lane: usize,
         fit: &mut Slot<L, N, W, P>,
         u: &[f64; P],
-        stride: usize,
     ) -> bool {
         let estimator = &fit.problem.estimator;
-        let model = estimator.model_for(u, stride);
-        let (before, end) = span(&model, estimator.groups());
+        let share = fit.search.share();
+        let model = estimator.model_for(u, share.rough);
+        let (before, end) = span(&model, share.groups);
         let suits = self.impacts.suits(&model.event.law);
         let way = Way::new(&model.event, before, end).filter(|_| suits);
         let Some((way, leg)) = way else {
-            fit.search.take(estimator.evaluate_share(u, stride));
+            let found = estimator.evaluate_share(u, &share);
+            fit.search.take(found);
             return false;
         };
         self.impacts.place(lane, &model.event);
         self.impacts.begin(lane, &leg, &mut self.lockstep);
         fit.run = Some(Run {
             model,
-            stride,
             end,
             way,
             tally: Tally::EMPTY,
@@ -173,10 +172,9 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
         };
         let (done, position) = (self.lockstep.step(lane), self.lockstep.position(lane));
         let (segment, piece, next) = run.way.took(&run.model.event, done, position);
-        let groups = fit.problem.estimator.groups();
-        let share = (groups, run.stride, run.end);
-        let piece = (&segment, piece);
-        read_piece(&run.model, share, piece, &mut run.tally);
+        let Share { groups, stride, .. } = fit.search.share();
+        let share = (groups, stride, run.end);
+        read_piece(&run.model, share, (&segment, piece), &mut run.tally);
         match next {
             Next::Step => Progress::Going,
             Next::Leg(leg) => {
@@ -184,9 +182,10 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
                 Progress::Going
             }
             Next::End => {
-                let mut found = run.tally.total(groups, run.stride);
-                if let Some((u, stride)) = fit.search.propose() {
-                    fit.problem.estimator.add_priors(&u, stride, &mut found);
+                let mut found = run.tally.total(run.model.onset, groups, stride);
+                if let Some(u) = fit.search.propose() {
+                    let priors = &mut found.equations;
+                    fit.problem.estimator.add_priors(&u, stride, priors);
                 }
                 Progress::Done(Some(found))
             }
@@ -198,6 +197,6 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
 /// How far an evaluation has come.
 enum Progress<const P: usize> {
     Going,
-    /// Its normal equations, if there are any.
-    Done(Option<NormalEquations<P>>),
+    /// What it found, if anything.
+    Done(Option<Found<P>>),
 }

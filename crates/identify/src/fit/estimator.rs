@@ -3,9 +3,9 @@
 
 use crate::fit::model::{Columns, Model, Sampling};
 use crate::fit::problem::Prior;
-use crate::fit::residual::{Rows, evaluate, evaluate_some};
+use crate::fit::residual::{Found, Rows, evaluate, evaluate_some};
 pub use crate::fit::search::FORESIGHT;
-use crate::fit::search::{Search, seen};
+use crate::fit::search::{Samples, Search, Share, seen};
 use crate::rig::impact_event::{ImpactEvent, Seeds};
 use crate::rig::motion::Motion;
 use crate::samples::SampleGroup;
@@ -13,9 +13,7 @@ use windfall_contact::law::{ContactLaw, EndRule};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kuwabara_kono::KuwabaraKono;
 use windfall_contact::laws::user::UserLaw;
-use windfall_numerics::least_squares::{
-    Bounds, LeastSquares, Minimum, NormalEquations, Options, minimise,
-};
+use windfall_numerics::least_squares::{Bounds, LeastSquares, Minimum, NormalEquations, Options};
 use windfall_numerics::ode::step::Tolerance;
 use windfall_numerics::real::Lanes;
 
@@ -318,59 +316,74 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
 
     /// Minimum of the cost from the values in `base`.
     ///
-    /// The way there is found with a share of the samples and a coarser
-    /// integration, the minimum with all of them; where that fails, all is done
-    /// with all of them.
+    /// The way there is found with a share of the samples or with condensed ones, and
+    /// with a coarser integration at first; the minimum with all of them. Where that
+    /// fails, all is done with all of them.
     pub fn minimise(&mut self, options: &Options<P>) -> Minimum<P> {
-        let mut search = self.search(options);
-        while let Some((u, stride)) = search.propose() {
-            search.take(self.evaluate_share(&u, stride));
+        self.finish(self.search(options))
+    }
+
+    fn finish(&self, mut search: Search<P>) -> Minimum<P> {
+        while let Some(u) = search.propose() {
+            let found = self.evaluate_share(&u, &search.share());
+            search.take(found);
         }
         search.minimum()
     }
 
     /// The search that [`minimise`](Self::minimise) makes.
-    pub(crate) fn search(&self, options: &Options<P>) -> Search<P> {
+    pub(crate) fn search(&self, options: &Options<P>) -> Search<'a, P> {
         let mut start = [0.0; P];
         for (u, parameter) in start.iter_mut().zip(self.free) {
             *u = parameter.coordinate.of(self.base.get(parameter.target));
         }
-        Search::new(&start, &self.bounds(), options, self.share())
+        let options = match self.onset_is_free() {
+            true => seen(options),
+            false => *options,
+        };
+        Search::new(&start, &self.bounds(), &options, self.samples(&start, true))
     }
 
     /// The search that [`minimise_from`](Self::minimise_from) makes.
-    pub(crate) fn search_from(&self, start: &[f64; P], options: &Options<P>) -> Search<P> {
-        Search::near(start, &self.bounds(), options)
+    pub(crate) fn search_from(&self, start: &[f64; P], options: &Options<P>) -> Search<'a, P> {
+        let samples = self.samples(start, false);
+        Search::new(start, &self.bounds(), &seen(options), samples)
     }
 
-    /// Of how many packs of samples one shows the way, if so few do. A free onset
-    /// has many minima, one beside each sample: there all samples decide.
-    fn share(&self) -> Option<usize> {
-        let samples = self.groups.iter().map(|g| g.times().len()).max()?;
-        let stride = (samples / APPROACH_SAMPLES).min(LARGEST_STRIDE);
-        let onset = self.free.iter().any(|p| p.target == Target::Onset);
-        (stride >= 2 && !onset).then_some(stride)
+    /// The samples, of which few packs show the way from `far`. A free onset has many
+    /// minima, one beside each sample: there all samples near it decide, and the others
+    /// are condensed. A law with a memory or a kink has corners during contact.
+    fn samples(&self, start: &[f64; P], far: bool) -> Samples<'a> {
+        let samples = self.groups.iter().map(|g| g.times().len()).max();
+        let stride = (samples.unwrap_or(0) / APPROACH_SAMPLES).min(LARGEST_STRIDE);
+        let stride = (stride >= 2 && far && !self.onset_is_free()).then_some(stride);
+        let smooth = !self.law.history() && self.law.kink() == f64::INFINITY;
+        Samples {
+            groups: self.groups,
+            stride,
+            touch: (smooth && stride.is_none()).then(|| self.values(start).onset),
+        }
+    }
+
+    fn onset_is_free(&self) -> bool {
+        self.free.iter().any(|p| p.target == Target::Onset)
     }
 
     /// The model at coordinates `u`, integrated as its share of samples deserves.
     #[inline(always)]
-    pub(crate) fn model_for(&self, u: &[f64; P], stride: usize) -> Model<L, N, W, P> {
+    pub(crate) fn model_for(&self, u: &[f64; P], rough: bool) -> Model<L, N, W, P> {
         let mut model = self.model(u);
-        if stride > 1 {
+        if rough {
             model.event.tolerance = self.setting.tolerance.loosened(APPROACH_LOOSENESS);
         }
         model
     }
 
-    /// Normal equations at coordinates `u` of one in `stride` packs of samples.
-    pub(crate) fn evaluate_share(&self, u: &[f64; P], stride: usize) -> Option<NormalEquations<P>> {
-        let model = self.model_for(u, stride);
-        let groups = self.groups;
-        let mut found = match stride {
-            1 => evaluate(&model, groups, None).ok()?,
-            _ => evaluate_some(&model, groups, stride).ok()?,
-        };
-        self.add_priors(u, stride, &mut found);
+    /// Normal equations at coordinates `u` of a share of the samples.
+    pub(crate) fn evaluate_share(&self, u: &[f64; P], share: &Share) -> Option<Found<P>> {
+        let model = self.model_for(u, share.rough);
+        let mut found = evaluate_some(&model, share.groups, share.stride).ok()?;
+        self.add_priors(u, share.stride, &mut found.equations);
         Some(found)
     }
 
@@ -396,8 +409,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
 
     /// Minimum of the cost from coordinates `start`, whose end is never foreseen.
     pub fn minimise_from(&mut self, start: &[f64; P], options: &Options<P>) -> Minimum<P> {
-        let bounds = self.bounds();
-        minimise(self, start, &bounds, &seen(options))
+        self.finish(self.search_from(start, options))
     }
 
     /// Residuals and derivatives of each sample at coordinates `u`.
@@ -413,6 +425,7 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LeastSquares
     for Estimator<'_, L, N, W, P>
 {
     fn evaluate(&mut self, u: &[f64; P]) -> Option<NormalEquations<P>> {
-        self.evaluate_share(u, 1)
+        let found = self.evaluate_share(u, &Share::all(self.groups))?;
+        Some(found.equations)
     }
 }

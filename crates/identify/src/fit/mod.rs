@@ -4,6 +4,7 @@ pub mod batch;
 pub mod batch_law;
 mod batch_motion;
 mod bootstrap;
+mod condensed;
 pub mod estimator;
 mod free;
 pub mod identifiability;

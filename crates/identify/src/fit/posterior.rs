@@ -4,6 +4,7 @@ use crate::fit::estimator::{Coordinate, Estimator, FreeLaw};
 use crate::fit::interval::{
     FreeIntervals, IntervalDetail, IntervalPlan, Posterior, deviation, quantile,
 };
+use crate::fit::search::Share;
 use crate::sampler::{Drawing, LogDensity, draw_chains};
 use windfall_numerics::least_squares::Minimum;
 use windfall_statistics::chain_diagnostics::{ChainDiagnostics, chain_diagnostics};
@@ -46,7 +47,8 @@ impl<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> LogDensity
         if !inside {
             return None;
         }
-        let found = self.estimator.evaluate_share(&u, 1)?;
+        let share = Share::all(self.estimator.groups());
+        let found = self.estimator.evaluate_share(&u, &share)?.equations;
         let mut density = -0.5 * (found.cost - self.minimum.equations.cost);
         // The normal equations hold half the gradient of the cost.
         let mut slope = found.gradient.map(|g| -g);

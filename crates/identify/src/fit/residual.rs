@@ -1,6 +1,7 @@
 //! Residuals of an impact and their derivatives, summed into the normal
 //! equations in one pass over the samples, several samples at a time.
 
+use crate::fit::condensed::Bends;
 use crate::fit::model::Model;
 use crate::fit::onset_average::{OnsetAverage, OnsetCorrection};
 use crate::fit::residual_noise::Noise;
@@ -46,12 +47,20 @@ pub fn evaluate<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize
     groups: &[SampleGroup],
     rows: Option<&mut Rows>,
 ) -> Result<NormalEquations<P>, StepError> {
-    pass(model, groups, rows, 1)
+    pass(model, groups, rows, 1).map(|found| found.equations)
+}
+
+/// What an evaluation finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<const P: usize> {
+    pub(crate) equations: NormalEquations<P>,
+    /// Where the model has corners.
+    pub(crate) bends: Bends,
 }
 
 /// [`evaluate`] with a share of the samples and as if their noise were white, for
 /// the way to the minimum: every `stride`-th pack of them, the same ones wherever
-/// the pieces of the motion end.
+/// the pieces of the motion end. A stride of 1 is all of them, with their noise.
 ///
 /// # Errors
 /// [`StepError`] when the motion cannot be integrated.
@@ -59,7 +68,7 @@ pub(crate) fn evaluate_some<L: ContactLaw<N>, const N: usize, const W: usize, co
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
     stride: usize,
-) -> Result<NormalEquations<P>, StepError> {
+) -> Result<Found<P>, StepError> {
     pass(model, groups, None, stride)
 }
 
@@ -70,7 +79,7 @@ fn pass<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     groups: &[SampleGroup],
     rows: Option<&mut Rows>,
     stride: usize,
-) -> Result<NormalEquations<P>, StepError> {
+) -> Result<Found<P>, StepError> {
     pulp::Arch::new().dispatch(Pass {
         model,
         groups,
@@ -90,7 +99,7 @@ struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
 impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::WithSimd
     for Pass<'_, L, N, W, P>
 {
-    type Output = Result<NormalEquations<P>, StepError>;
+    type Output = Result<Found<P>, StepError>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
@@ -113,7 +122,7 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::Wit
         follow(&model.event, before, after, &mut |segment, piece| {
             reading.read(segment, piece);
         })?;
-        Ok(tally.total(groups, stride))
+        Ok(tally.total(model.onset, groups, stride))
     }
 }
 
@@ -134,22 +143,35 @@ pub(crate) fn span<L, const N: usize, const W: usize, const P: usize>(
 pub(crate) struct Tally<const P: usize> {
     sums: Sums<Pack, P>,
     noise: Noise<P>,
+    /// End of the last piece of contact; s from first touch.
+    contact_end: f64,
 }
 
 impl<const P: usize> Tally<P> {
     pub(crate) const EMPTY: Self = Self {
         sums: Sums::ZERO,
         noise: Noise::NONE,
+        contact_end: 0.0,
     };
 
     /// The normal equations, after the last piece.
     #[inline(always)]
-    pub(crate) fn total(&mut self, groups: &[SampleGroup], stride: usize) -> NormalEquations<P> {
+    pub(crate) fn total(&mut self, onset: f64, groups: &[SampleGroup], stride: usize) -> Found<P> {
         let mut equations = self.sums.total();
+        for group in groups {
+            let parts = group.weights.iter().zip(&group.remainder);
+            equations.cost += parts.map(|(weight, rest)| weight * rest).sum::<f64>();
+        }
         if stride == 1 {
             self.noise.complete(groups, &mut equations);
         }
-        equations
+        Found {
+            equations,
+            bends: Bends {
+                touch: onset,
+                separation: Some(onset + self.contact_end),
+            },
+        }
     }
 }
 
@@ -188,6 +210,9 @@ struct Reading<'a, L, const N: usize, const W: usize, const P: usize> {
 impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> Reading<'_, L, N, W, P> {
     #[inline(never)]
     fn read(&mut self, segment: &Segment<W>, piece: Piece) {
+        if piece == Piece::Contact {
+            self.tally.contact_end = segment.to;
+        }
         with_four_lanes(ReadPiece {
             reading: self,
             segment,
@@ -225,15 +250,20 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> FourLanes
             }
             let mut rows = rows.as_deref_mut().map(|rows| (rows, index));
             // Only contact and the flight before touch the onset.
-            let average = OnsetAverage::new(model, group)
-                .filter(|_| self.piece == Piece::Contact || self.segment.to <= 0.0);
-            // The acceleration matters to a recorded one and to the onset's column.
+            let average = OnsetAverage::new(model, group).filter(|average| {
+                let touched = self.piece == Piece::Contact || self.segment.to <= 0.0;
+                touched && self.segment.from < average.until()
+            });
+            // The acceleration matters to a recorded one and to the onset's column, but
+            // not to that of the displacement.
+            let rests = group.holds(Quantity::Rate) || group.holds(Quantity::Force);
             let accelerated = group.holds(Quantity::Acceleration)
-                || model.columns.onset.iter().any(|onset| *onset != 0.0);
+                || rests && model.columns.onset.iter().any(|onset| *onset != 0.0);
+            let force = accelerated || group.holds(Quantity::Force);
             let share = Share {
                 zero,
                 piece: PieceModel::new(model, self.segment, accelerated),
-                contact: self.piece == Piece::Contact,
+                force: force && self.piece == Piece::Contact,
                 group,
                 range,
                 stride: *stride,
@@ -249,8 +279,8 @@ struct Share<'a, L, R, const N: usize, const W: usize, const P: usize> {
     /// A number of the kind to calculate with.
     zero: R,
     piece: PieceModel<'a, L, N, W, P>,
-    /// Whether the bodies touch during the piece.
-    contact: bool,
+    /// Whether there is a force that matters.
+    force: bool,
     group: &'a SampleGroup,
     /// Indices of the first and behind the last.
     range: (usize, usize),
@@ -265,7 +295,8 @@ struct PackAt<R> {
     at: usize,
     /// How many there are: [`PACK`] but where the range begins or ends.
     count: usize,
-    /// 1 in the lanes that hold a sample, 0 in the others.
+    /// How often the sample in each lane counts: once, or for a stretch of samples; 0
+    /// where there is none.
     counted: R,
 }
 
@@ -280,10 +311,8 @@ where
         if stride == 1 {
             tally.noise.begin(self.range.0);
         }
-        let simple = (stride > 1 || (0..QUANTITIES).all(|q| group.is_white(q)))
-            && group.relative.iter().all(Vec::is_empty)
-            && self.average.is_none()
-            && rows.is_none();
+        let persistent = group.persistence.iter().any(|own| *own != 0.0);
+        let simple = (stride > 1 || !persistent) && self.average.is_none() && rows.is_none();
         match simple {
             true => self.read_packs::<true>(tally, rows),
             false => self.read_packs::<false>(tally, rows),
@@ -293,8 +322,8 @@ where
         }
     }
 
-    /// `SIMPLE` samples have white noise of one variance, are taken at their
-    /// instant, and nothing but sums is wanted.
+    /// `SIMPLE` samples have noise that does not persist, are taken at their instant,
+    /// and nothing but sums is wanted.
     #[inline(always)]
     fn read_packs<const SIMPLE: bool>(
         &self,
@@ -319,15 +348,15 @@ where
             // The roots of the next pack run beside what follows from this one.
             let next_times = load(&group.times, next.min(group.len));
             let next_place = piece.place(zero.with_plain(next_times));
-            let mut found = piece.at(place, self.contact);
+            let mut found = piece.at(place, self.force);
             if let (false, Some(average)) = (SIMPLE, self.average) {
                 piece.correct_onset(&mut found, times, average);
             }
-            let pack = PackAt {
-                at,
-                count,
-                counted: zero.with_plain(COUNTED[count]),
-            };
+            let mut counted = zero.with_plain(COUNTED[count]);
+            if !group.shares.is_empty() {
+                counted = counted * zero.with_plain(load(&group.shares, at));
+            }
+            let pack = PackAt { at, count, counted };
             // Written out: an index known to the compiler keeps the model in registers.
             self.add::<0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
             self.add::<1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
@@ -356,7 +385,7 @@ where
         }
         let zero = pack.counted;
         let mut weight = pack.counted * group.weights[Q];
-        if !SIMPLE && !group.relative[Q].is_empty() {
+        if !group.relative[Q].is_empty() {
             weight = weight * zero.with_plain(load(&group.relative[Q], pack.at));
         }
         let mut residual = found.values[Q] - zero.with_plain(load(&group.values[Q], pack.at));
@@ -367,6 +396,8 @@ where
             weight = zero.with_plain(row.0);
             residual = zero.with_plain(row.1);
             jacobian = zero.with_each_plain(row.2);
+        } else if SIMPLE && self.stride == 1 && group.zero_sd[Q] > 0.0 {
+            noise.zeros[Q].add(weight, 1.0, residual, &jacobian);
         }
         sums.add(weight, residual, &jacobian);
     }

@@ -10,7 +10,7 @@ use windfall_numerics::real_vector::{FourLanes, with_four_lanes};
 /// State of every quantity's noise; each quantity is in one group.
 pub(crate) struct Noise<const P: usize> {
     whitening: [Whitening<P>; QUANTITIES],
-    zeros: [ZeroSums<P>; QUANTITIES],
+    pub(crate) zeros: [ZeroSums<P>; QUANTITIES],
     /// First rows of the piece at hand that wait for their predecessor.
     openings: [Option<Row<P>>; QUANTITIES],
     /// Rows that found their predecessor in a later piece.

@@ -74,7 +74,7 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         }
     }
 
-    /// The model of samples at a [`place`](Self::place), in contact or in flight.
+    /// The model of samples at a [`place`](Self::place), with a force or without.
     #[inline(always)]
     pub(crate) fn at<R: Real>(&self, (sigma, rest): (R, R), contact: bool) -> PackModel<R, P> {
         let zero = sigma.constant(0.0);
@@ -109,6 +109,12 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         } else if contact {
             for c in 0..P {
                 jacobian[2][c] = self.force_column(&force, &jacobian, c);
+            }
+        } else {
+            // Of the displacement alone.
+            for c in 0..P {
+                let later = zero.constant(-columns.onset[c]);
+                jacobian[0][c] = v.mul_add(later, jacobian[0][c]);
             }
         }
         for c in 0..P {

@@ -1,7 +1,10 @@
-//! The way of one fit to its minimum: first with a share of the samples, then
-//! with all of them.
+//! The way of one fit to its minimum: first with a share of the samples or with
+//! condensed ones, then with all of them.
 
-use windfall_numerics::least_squares::{Bounds, Descent, Minimum, NormalEquations, Options, Stop};
+use crate::fit::condensed::{Bends, condensed};
+use crate::fit::residual::Found;
+use crate::samples::SampleGroup;
+use windfall_numerics::least_squares::{Bounds, Descent, Minimum, Options, Stop};
 
 /// The way ends when the next step gains less than this fraction of the cost: by
 /// then all samples pull harder.
@@ -15,18 +18,58 @@ pub const FORESIGHT: f64 = 100.0;
 /// What is being minimised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
-    /// The cost of one in so many packs of samples.
-    Approach(usize),
-    /// That of all, from where the approach ended.
+    /// The cost of a share of the samples, roughly integrated.
+    Approach,
+    /// That of condensed samples, from where the approach ended.
+    Close,
+    /// That of all, from where the stage before ended.
     Near,
     /// That of all, from the start.
     Alone,
 }
 
-/// A minimisation whose evaluations use a share of the samples first, then all.
+/// The samples of a fit, and how they may be shared out on the way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Search<const P: usize> {
+pub(crate) struct Samples<'a> {
+    /// All of them.
+    pub groups: &'a [SampleGroup],
+    /// Of how many packs one may show the way, in place of condensed samples.
+    pub stride: Option<usize>,
+    /// First touch at the start of the fit where samples may be condensed: the model is
+    /// smooth between first touch and separation; s.
+    pub touch: Option<f64>,
+}
+
+/// The samples that an evaluation is of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Share<'s> {
+    /// All samples, or condensed ones.
+    pub groups: &'s [SampleGroup],
+    /// Of how many packs one counts.
+    pub stride: usize,
+    /// Whether a rough integration will do.
+    pub rough: bool,
+}
+
+impl<'s> Share<'s> {
+    /// All samples.
+    pub(crate) fn all(groups: &'s [SampleGroup]) -> Self {
+        Self {
+            groups,
+            stride: 1,
+            rough: false,
+        }
+    }
+}
+
+/// A minimisation whose evaluations use a share of the samples first, then all.
+#[derive(Clone, Debug)]
+pub(crate) struct Search<'a, const P: usize> {
     stage: Stage,
+    samples: Samples<'a>,
+    condensed: Option<Vec<SampleGroup>>,
+    /// Corners of the model at the last evaluation.
+    bends: Option<Bends>,
     descent: Descent<P>,
     start: [f64; P],
     bounds: Bounds<P>,
@@ -35,26 +78,34 @@ pub(crate) struct Search<const P: usize> {
     spent: usize,
 }
 
-impl<const P: usize> Search<P> {
-    /// A search from `start`; on the way, one in `stride` packs of samples counts.
+impl<'a, const P: usize> Search<'a, P> {
+    /// A search from `start`.
     pub fn new(
         start: &[f64; P],
         bounds: &Bounds<P>,
         options: &Options<P>,
-        stride: Option<usize>,
+        samples: Samples<'a>,
     ) -> Self {
-        let (stage, first) = match stride {
-            Some(stride) => {
+        let condensed = match (samples.stride, samples.touch) {
+            (None, Some(touch)) => condensed(samples.groups, Bends::of_touch(touch)),
+            _ => None,
+        };
+        let first = seen(options);
+        let (stage, first) = match samples.stride.is_some() || condensed.is_some() {
+            true => {
                 let coarse = Options {
                     cost_tolerance: options.cost_tolerance.max(APPROACH_GAIN),
-                    ..seen(options)
+                    ..first
                 };
-                (Stage::Approach(stride), coarse)
+                (Stage::Approach, coarse)
             }
-            None => (Stage::Alone, seen(options)),
+            false => (Stage::Alone, first),
         };
         let mut search = Self {
             stage,
+            samples,
+            condensed,
+            bends: None,
             descent: Descent::new(start, bounds, &first),
             start: *start,
             bounds: *bounds,
@@ -65,32 +116,33 @@ impl<const P: usize> Search<P> {
         search
     }
 
-    /// A search from `start`, which is near the minimum, with all samples; its end
-    /// is never foreseen.
-    pub(crate) fn near(start: &[f64; P], bounds: &Bounds<P>, options: &Options<P>) -> Self {
-        Self {
-            stage: Stage::Alone,
-            descent: Descent::new(start, bounds, &seen(options)),
-            start: *start,
-            bounds: *bounds,
-            options: *options,
-            spent: 0,
+    /// Where to evaluate next; `None` at the end.
+    pub(crate) fn propose(&self) -> Option<[f64; P]> {
+        self.descent.propose()
+    }
+
+    /// The samples that the next evaluation is of.
+    pub(crate) fn share(&self) -> Share<'_> {
+        let all = Share::all(self.samples.groups);
+        let few = Share {
+            groups: self.condensed.as_deref().unwrap_or(all.groups),
+            ..all
+        };
+        match self.stage {
+            Stage::Approach => Share {
+                stride: self.samples.stride.unwrap_or(1),
+                rough: true,
+                ..few
+            },
+            Stage::Close => few,
+            Stage::Near | Stage::Alone => all,
         }
     }
 
-    /// Where to evaluate next, and of how many packs of samples one; `None` at the
-    /// end.
-    pub(crate) fn propose(&self) -> Option<([f64; P], usize)> {
-        let stride = match self.stage {
-            Stage::Approach(stride) => stride,
-            Stage::Near | Stage::Alone => 1,
-        };
-        self.descent.propose().map(|at| (at, stride))
-    }
-
-    /// Takes the normal equations at the last proposal; `None` where there are none.
-    pub(crate) fn take(&mut self, found: Option<NormalEquations<P>>) {
-        self.descent.take(found);
+    /// Takes what is found at the last proposal; `None` where nothing is.
+    pub(crate) fn take(&mut self, found: Option<Found<P>>) {
+        self.bends = found.map(|found| found.bends).or(self.bends);
+        self.descent.take(found.map(|found| found.equations));
         self.turn();
     }
 
@@ -105,35 +157,48 @@ impl<const P: usize> Search<P> {
     fn turn(&mut self) {
         while self.descent.propose().is_none() {
             let found = self.descent.minimum();
-            let inside = found.at_bound.iter().all(|side| *side == 0);
-            let from = match self.stage {
-                Stage::Approach(_) if found.stop == Stop::Converged && inside => {
-                    self.stage = Stage::Near;
-                    self.spent = found.evaluations;
-                    // The first damped step would hide how well the steps converge,
-                    // which a foreseen end is judged by.
-                    if self.options.foresight > 0.0 {
-                        self.descent = Descent::resumed(&self.descent, &self.bounds, &self.options);
-                        continue;
-                    }
-                    found.parameters
+            let usable = match self.stage {
+                Stage::Approach => {
+                    let inside = found.at_bound.iter().all(|side| *side == 0);
+                    found.stop == Stop::Converged && inside
                 }
-                Stage::Approach(_) => {
-                    self.stage = Stage::Alone;
-                    self.start
+                Stage::Close | Stage::Near => {
+                    !matches!(found.stop, Stop::BadStart | Stop::EvaluationLimit)
                 }
-                Stage::Near if matches!(found.stop, Stop::BadStart | Stop::EvaluationLimit) => {
-                    self.stage = Stage::Alone;
+                Stage::Alone => return,
+            };
+            if !usable {
+                if self.stage != Stage::Approach {
                     self.spent += found.evaluations;
-                    self.start
                 }
+                self.stage = Stage::Alone;
+                self.descent = Descent::new(&self.start, &self.bounds, &seen(&self.options));
+                continue;
+            }
+            self.stage = match self.stage {
+                Stage::Approach => self.come_close(),
+                Stage::Close => Stage::Near,
                 Stage::Near | Stage::Alone => return,
             };
-            let options = match self.stage {
-                Stage::Near => self.options,
-                Stage::Approach(_) | Stage::Alone => seen(&self.options),
+            self.spent += found.evaluations;
+            // The first damped step would hide how well the steps converge, which a
+            // foreseen end is judged by.
+            self.descent = match self.options.foresight > 0.0 || self.stage == Stage::Close {
+                true => Descent::resumed(&self.descent, &self.bounds, &self.options),
+                false => Descent::new(&found.parameters, &self.bounds, &self.options),
             };
-            self.descent = Descent::new(&from, &self.bounds, &options);
+        }
+    }
+
+    /// What follows the approach: condensed samples, where there are such.
+    fn come_close(&mut self) -> Stage {
+        self.condensed = match (self.samples.touch, self.bends) {
+            (Some(_), Some(bends)) => condensed(self.samples.groups, bends),
+            _ => None,
+        };
+        match self.condensed {
+            Some(_) => Stage::Close,
+            None => Stage::Near,
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
 use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, wander};
 use crate::trigger::scale::{
-    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, moving_mean, pulse_scale, quieter, white_noise,
+    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, RunningSums, pulse_scale, quieter, white_noise,
 };
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -268,13 +268,14 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     let keeps = options.baseline == Baseline::Keep;
     let centre = if keeps { 0.0 } else { pilot };
     let sample_noise = white_noise(signal.values);
+    let sums = RunningSums::of(signal.values);
     let PulseScale {
         top,
         reversed,
         smoothing,
         visible,
     } = pulse_scale(
-        signal.values,
+        &sums,
         Level {
             value: centre,
             samples: pilot_samples(n),
@@ -283,7 +284,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         options.threshold.deviations(),
     );
     let sign = if reversed { -1.0 } else { 1.0 };
-    let averaged = moving_mean(signal.values, smoothing);
+    let averaged = sums.means(smoothing);
 
     // Baseline, threshold and windows; once more when the first contact is known.
     // Where nothing stands out, all is baseline.
@@ -316,15 +317,16 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
             .map(|v| sign * (v - contacts.offset))
             .collect();
         let noise = |length: usize| {
-            let averaged = moving_mean(signal.values, length);
-            smoothed_noise(&averaged[quiet.clone()], usual.max(sample_noise), length)
+            let averaged = sums.means_in(quiet.clone(), length);
+            smoothed_noise(&averaged, usual.max(sample_noise), length)
         };
+        let raised_sums = RunningSums::of(&raised);
         contacts.smoothing = match options.threshold {
-            Threshold::Fixed(force) => quieter(&raised, smoothing, force / FIXED_CLEAR, noise),
+            Threshold::Fixed(force) => quieter(&raised_sums, smoothing, force / FIXED_CLEAR, noise),
             Threshold::Automatic { .. } => smoothing,
         };
         let smoothing = contacts.smoothing;
-        let smooth = moving_mean(&raised, smoothing);
+        let smooth = raised_sums.means(smoothing);
         let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         contacts.threshold = level(&contacts, options, noise(smoothing), largest, first_pass);
         let release = options.release * contacts.threshold;

@@ -1,6 +1,7 @@
 //! How long a contact lasts and over what to average it, when noise hides it.
 
 use crate::noise::estimate::median;
+use std::ops::Range;
 
 /// A pulse stands out if its averaged height is this many standard deviations
 /// of the average; 1. So many that its half height is not crossed by chance
@@ -53,10 +54,11 @@ pub struct Level {
 /// duration; the smoothing is 1/50 of that duration, or as much more, up to
 /// 1/5, as brings `deviations` of the averaged noise down to 1/10 of the peak.
 ///
+/// * `sums`: of the signal
 /// * `noise`: standard deviation of a sample; unit of the signal
 /// * `deviations`: standard deviations between noise and threshold; 1
-pub fn pulse_scale(values: &[f64], level: Level, noise: f64, deviations: f64) -> PulseScale {
-    let (mut length, clear) = length_that_shows(values, level, noise);
+pub fn pulse_scale(sums: &RunningSums, level: Level, noise: f64, deviations: f64) -> PulseScale {
+    let (mut length, clear) = length_that_shows(sums, level, noise);
     let centre = level.value;
     let visible = clear >= deviations;
     if !visible {
@@ -67,7 +69,7 @@ pub fn pulse_scale(values: &[f64], level: Level, noise: f64, deviations: f64) ->
     // Noise cuts the stretch above half short, so it is looked for again in the
     // smoother signal.
     for pass in 0..3 {
-        let smooth = moving_mean(values, length);
+        let smooth = sums.means(length);
         if pass == 0 {
             top = index_of_largest(&smooth, |v| (v - centre).abs());
             reversed = smooth[top] < centre;
@@ -102,10 +104,10 @@ fn height_and_duration(smooth: &[f64], top: usize, centre: f64, sign: f64) -> (f
 /// strongest pulse; no fewer than `smoothing`. A pulse that noise cuts into pieces is seen
 /// whole as the average lengthens.
 ///
-/// * `values`: signal above its zero, positive in contact
+/// * `sums`: of the signal above its zero, positive in contact
 /// * `noise`: of an average over how many samples
 pub fn quieter(
-    values: &[f64],
+    sums: &RunningSums,
     smoothing: usize,
     wanted: f64,
     noise: impl Fn(usize) -> f64,
@@ -116,7 +118,7 @@ pub fn quieter(
         if now <= wanted {
             break;
         }
-        let smooth = moving_mean(values, length);
+        let smooth = sums.means(length);
         let top = index_of_largest(&smooth, |v| v);
         let (_, duration) = height_and_duration(&smooth, top, 0.0, 1.0);
         let most = SMOOTHING_LIMIT * duration;
@@ -144,10 +146,10 @@ pub fn white_noise(values: &[f64]) -> f64 {
 /// The shortest length, doubled from 1, over which the largest mean is clear of
 /// the noise, else the one over which it is clearest; and how many standard
 /// deviations of mean and level that is.
-fn length_that_shows(values: &[f64], level: Level, noise: f64) -> (usize, f64) {
+fn length_that_shows(sums: &RunningSums, level: Level, noise: f64) -> (usize, f64) {
     let (mut length, mut best) = (1, (1, 0.0));
-    while length <= (values.len() / 4).max(1) {
-        let smooth = moving_mean(values, length);
+    while length <= (sums.values.len() / 4).max(1) {
+        let smooth = sums.means(length);
         let distances = smooth.iter().map(|v| (v - level.value).abs());
         let largest = distances.fold(0.0, f64::max);
         // Variance of a mean, and of a median (π/2 times that of its mean).
@@ -178,31 +180,61 @@ pub fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
 /// Centred mean over `length` samples (odd); at both ends over those that there
 /// are, at least half of them, so that noise is averaged there too.
 pub fn moving_mean(values: &[f64], length: usize) -> Vec<f64> {
-    let half = length / 2;
-    let n = values.len();
-    if half == 0 {
-        return values.to_vec();
+    match length / 2 {
+        0 => values.to_vec(),
+        _ => RunningSums::of(values).means(length),
     }
-    let mut sums = Vec::with_capacity(n + 1);
-    sums.push(0.0);
-    let mut sum = 0.0;
-    for value in values {
-        sum += value;
-        sums.push(sum);
+}
+
+/// A signal with the sums of its first 0, 1, … samples, from which means over any number of
+/// them come.
+pub struct RunningSums<'a> {
+    values: &'a [f64],
+    sums: Vec<f64>,
+}
+
+impl<'a> RunningSums<'a> {
+    /// Sums up a signal.
+    pub fn of(values: &'a [f64]) -> Self {
+        let mut sums = Vec::with_capacity(values.len() + 1);
+        sums.push(0.0);
+        let mut sum = 0.0;
+        for value in values {
+            sum += value;
+            sums.push(sum);
+        }
+        Self { values, sums }
     }
-    let mean = |i: usize| {
-        let (first, last) = (i.saturating_sub(half), (i + half + 1).min(n));
-        (sums[last] - sums[first]) / (last - first) as f64
-    };
-    // The windows that are whole, apart: they need no limits.
-    let inner = half.min(n)..n.saturating_sub(half).max(half.min(n));
-    let mut means = Vec::with_capacity(n);
-    means.extend((0..inner.start).map(mean));
-    let whole = (2 * half + 1) as f64;
-    let windows = sums.iter().zip(sums.iter().skip(2 * half + 1));
-    means.extend(windows.map(|(first, last)| (last - first) / whole));
-    means.extend((inner.end..n).map(mean));
-    means
+
+    /// [`moving_mean`] of the signal.
+    pub fn means(&self, length: usize) -> Vec<f64> {
+        self.means_in(0..self.values.len(), length)
+    }
+
+    /// [`moving_mean`] of the signal, at some of the samples.
+    pub fn means_in(&self, range: Range<usize>, length: usize) -> Vec<f64> {
+        let (half, n, sums) = (length / 2, self.values.len(), &self.sums);
+        if half == 0 {
+            return self.values[range].to_vec();
+        }
+        let mean = |i: usize| {
+            let (first, last) = (i.saturating_sub(half), (i + half + 1).min(n));
+            (sums[last] - sums[first]) / (last - first) as f64
+        };
+        // The windows that are whole, apart: they need no limits.
+        let from = half.clamp(range.start, range.end);
+        let to = n.saturating_sub(half).clamp(from, range.end);
+        let mut means = Vec::with_capacity(range.len());
+        means.extend((range.start..from).map(mean));
+        let whole = (2 * half + 1) as f64;
+        if to > from {
+            let (first, last) = (&sums[from - half..], &sums[from + half + 1..]);
+            let windows = first.iter().zip(last).take(to - from);
+            means.extend(windows.map(|(first, last)| (last - first) / whole));
+        }
+        means.extend((to..range.end).map(mean));
+        means
+    }
 }
 
 #[cfg(test)]
@@ -245,11 +277,12 @@ mod tests {
             value: 0.0,
             samples: 400,
         };
-        let scale = pulse_scale(&values, zero, 0.0, 5.0);
+        let sums = RunningSums::of(&values);
+        let scale = pulse_scale(&sums, zero, 0.0, 5.0);
         assert!(scale.reversed && scale.top.abs_diff(800) <= 1);
         assert_eq!(scale.smoothing, 13);
         // With noise of half the peak the most that is allowed: 600/5.
-        let scale = pulse_scale(&values, zero, 0.5, 5.0);
+        let scale = pulse_scale(&sums, zero, 0.5, 5.0);
         assert!(scale.smoothing.abs_diff(120) <= 6, "{}", scale.smoothing);
     }
 }
