@@ -37,6 +37,10 @@ pub struct CauseFound {
     pub impacts: usize,
 }
 
+/// Part of the time between samples, over the contact, by which all impacts alike may be wrong
+/// about a frequency: of simulated sensors at 2 kHz, 200 kHz and 0.03 N of noise; 1.
+const BLUR: f64 = 0.1;
+
 /// Impacts without those that no common cause explains as the others.
 fn of_one_kind(impacts: &[BenchResiduals]) -> Vec<BenchResiduals> {
     let size = |own: &BenchResiduals| {
@@ -93,6 +97,8 @@ pub fn likeliest_causes(impacts: &[BenchResiduals], causes: &[Cause]) -> Vec<Cau
     let wider = impacts.iter().map(|own| own.inflation).sum::<f64>() / count;
     let least = solved.iter().map(|own| own.1.cost);
     let scale = least.fold(f64::INFINITY, f64::min) / freedom * wider.max(1.0);
+    let interval = impacts.iter().map(BenchResiduals::interval).sum::<f64>() / count;
+    let blur = BLUR * interval / duration;
     let mut all: Vec<CauseFound> = solved
         .into_iter()
         .map(|(cause, found, fault)| {
@@ -113,7 +119,7 @@ pub fn likeliest_causes(impacts: &[BenchResiduals], causes: &[Cause]) -> Vec<Cau
                 fault,
                 gain: Uncertain::new(fault.gain, sd(0)),
                 delay: Uncertain::new(fault.delay, sd(1) * LATE * duration),
-                frequency: Uncertain::new(frequency, sd(2) * frequency),
+                frequency: Uncertain::new(frequency, sd(2).hypot(blur) * frequency),
                 damping: Uncertain::new(damping, sd(3) * damping),
                 compliance: Uncertain::new(bending, sd(4) * BENT * softness),
                 aic: found.cost / scale + 2.0 * cause.parameters() as f64,

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::fit::plan::{Plan, plan};
 use crate::fit::problem::{FitOptions, LawProblem};
-use crate::fit::response::{Motion, Shift, clock, value_at};
+use crate::fit::response::{Curve, Motion, Shift};
 use crate::fit::solve::Solution;
 use crate::fit::uncertainty::{inflation, standardised};
 use crate::rig::kind::Rig;
@@ -29,11 +29,8 @@ pub struct BenchResiduals {
     /// Orthonormal: what the parameters of the fit can do.
     basis: Vec<Vec<f64>>,
     channels: Vec<(Quantity, SampleGroup)>,
-    /// First touch on the clock of the samples; s.
-    onset: f64,
-    step: f64,
-    /// The force of the fit from first touch on; N.
-    force: Vec<f64>,
+    /// The force of the fit.
+    force: Curve,
     /// What has been taken off the samples already.
     taken: Option<Shift>,
     /// Largest displacement over the largest force; m/N.
@@ -66,16 +63,16 @@ fn of_solution(plan: &Plan, solution: &Solution, rig: &Rig) -> Result<BenchResid
         velocity: solution.velocity,
         end: plan.options.end,
         onset: solution.onset,
+        sampling: plan.setting().sampling,
     };
-    let (interval, until) = clock(&plan.noise.groups);
     let finest = Response {
         sensor: Some(Swing {
-            frequency: FINEST.min(0.1 / interval),
+            frequency: FINEST,
             damping: 0.1,
         }),
         ..Response::default()
     };
-    let (step, force) = motion.force(&finest, interval, until)?;
+    let force = motion.curve(&finest, &plan.noise.groups)?;
     let count = plan.free.len();
     let mut own = BenchResiduals {
         residuals: Vec::new(),
@@ -83,8 +80,6 @@ fn of_solution(plan: &Plan, solution: &Solution, rig: &Rig) -> Result<BenchResid
         inflation: 1.0,
         basis: vec![Vec::new(); count],
         channels: Vec::new(),
-        onset: solution.onset,
-        step,
         force,
         softness: plan.features.displacement / plan.features.force,
         taken: plan.noise.shift.clone(),
@@ -169,12 +164,12 @@ impl BenchResiduals {
 
     /// Residuals as they are with a fault of the bench, after another fit; 1.
     pub(crate) fn with(&self, fault: &BenchFault) -> Vec<f64> {
-        let shift = Shift::of_force(&fault.response, self.onset, self.step, &self.force);
-        let force = |time: f64| self.force_at(time) + shift.at(Quantity::Force, time);
+        let shift = self.force.shift(&fault.response);
+        let force = |time: f64| self.force.at(time) + shift.at(Quantity::Force, time);
         let added = |quantity: Quantity, time: f64| {
             let now = match quantity {
                 Quantity::Force => {
-                    (1.0 + fault.gain) * force(time - fault.delay) - self.force_at(time)
+                    (1.0 + fault.gain) * force(time - fault.delay) - self.force.at(time)
                 }
                 other => shift.at(other, time),
             };
@@ -211,9 +206,5 @@ impl BenchResiduals {
     /// Largest displacement by the largest force; m/N.
     pub(crate) fn softness(&self) -> f64 {
         self.softness
-    }
-
-    fn force_at(&self, time: f64) -> f64 {
-        value_at(&self.force, (time - self.onset) / self.step)
     }
 }

@@ -7,7 +7,7 @@ use windfall_numerics::quadrature::FOUR_NODES;
 
 /// Samples later than this many intervals are taken at their instant; between
 /// one interval and this the mean fades into the instantaneous force.
-const FADE_END: f64 = 2.0;
+pub(crate) const FADE_END: f64 = 2.0;
 
 /// What to add to the instantaneous force and to its derivatives.
 pub trait OnsetCorrection<const P: usize> {
@@ -122,11 +122,17 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> OnsetCorr
 impl<L, const N: usize, const W: usize, const P: usize> OnsetAverage<'_, L, N, W, P> {
     /// How much of the correction is kept at `time`, and its derivative.
     fn fade(&self, time: f64) -> (f64, f64) {
-        let u = (time / self.interval - 1.0) / (FADE_END - 1.0);
-        if u <= 0.0 {
-            return (1.0, 0.0);
-        }
-        let slope = 1.0 / (self.interval * (FADE_END - 1.0));
-        (1.0 - u * u * (3.0 - 2.0 * u), -6.0 * u * (1.0 - u) * slope)
+        let (keep, slope) = kept(time / self.interval);
+        (keep, slope / self.interval)
     }
+}
+
+/// How much of the mean is kept so many intervals after first touch, and its derivative.
+pub(crate) fn kept(intervals: f64) -> (f64, f64) {
+    let u = (intervals - 1.0) / (FADE_END - 1.0);
+    if u <= 0.0 {
+        return (1.0, 0.0);
+    }
+    let slope = 1.0 / (FADE_END - 1.0);
+    (1.0 - u * u * (3.0 - 2.0 * u), -6.0 * u * (1.0 - u) * slope)
 }
