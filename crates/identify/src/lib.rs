@@ -5,14 +5,11 @@
 
 pub mod bench;
 pub mod compare;
-pub mod compression_fit;
-mod compression_problem;
 pub mod error;
 pub mod finding;
 pub mod fit;
 mod noise;
 pub mod population;
-pub mod relaxation;
 pub mod rig;
 pub mod sampler;
 pub mod samples;

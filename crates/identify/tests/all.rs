@@ -5,7 +5,6 @@
 mod allocation;
 mod batch;
 mod bench;
-mod compression;
 mod intervals;
 mod known;
 mod laws;

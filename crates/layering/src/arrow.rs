@@ -10,6 +10,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("signal", "statistics numerics"),
     ("repeat", "signal statistics numerics"),
     ("identify", "contact signal statistics numerics"),
+    ("compression", "identify contact signal numerics"),
     ("drop-rig", "statistics identify signal contact numerics"),
     ("scene", "contact numerics"),
     ("source", ""),
@@ -24,7 +25,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "measure",
-        "campaign draw files repeat identify contact signal numerics",
+        "campaign draw files repeat compression identify contact signal numerics",
     ),
     ("inspect", "campaign draw files formats numerics statistics"),
     (
@@ -74,7 +75,8 @@ const TEST_DATA: &str = "test-data";
 
 /// Crates that compute: they print nothing, open no file, read no clock and
 /// know neither formats nor HTTP nor Python.
-const INNER: &str = "numerics statistics contact signal repeat identify drop-rig design scene";
+const INNER: &str =
+    "numerics statistics contact signal repeat identify compression drop-rig design scene";
 
 /// Crates that face people and programs: they parse, call a workflow, display.
 const FRONT_ENDS: &str = "web cli python";

@@ -105,6 +105,11 @@ impl Response {
         *self == Self::default()
     }
 
+    /// Whether the force passes a filter or a sensor that swings.
+    pub fn smooths(&self) -> bool {
+        self.pole.is_some() || self.sensor.is_some()
+    }
+
     /// Coefficients of what the force is, F + a F' + b F'', of the force that is recorded; s, s².
     ///
     /// Exact for a filter or a sensor alone.

@@ -1,6 +1,6 @@
 //! Laws compared on the same impacts, by information criteria and by prediction.
 
-pub(crate) mod correlated_scores;
+pub mod correlated_scores;
 pub mod levels;
 mod prediction;
 pub mod ranking;

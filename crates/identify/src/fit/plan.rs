@@ -38,6 +38,9 @@ pub(crate) struct Plan<'a> {
     pub(crate) regression: Vec<RegressionEstimate>,
     pub(crate) motion: Motion,
     pub(crate) findings: Vec<Finding>,
+    /// Whether the fit ends at the minimum for instantaneous samples: a force that a filter or
+    /// a sensor has smoothed has no corner at first touch.
+    pub(crate) instants: bool,
 }
 
 pub(crate) fn plan<'a>(
@@ -83,6 +86,7 @@ pub(crate) fn plan<'a>(
         regression,
         motion: Motion::from(rig),
         findings,
+        instants: !options.response.smooths(),
     })
 }
 
@@ -281,6 +285,7 @@ impl Plan<'_> {
                 true => 0.0,
                 false => series(self.impact, q).map_or(0.0, |s| s.zero_sd),
             }),
+            instants: self.instants,
             intervals,
         };
         let law = self.problem.kind.with_parameters(&starts[0].0)?;

@@ -163,8 +163,7 @@ impl Curve {
             let place = time / self.step;
             value_at(&self.force, place) + value_at(&force, place)
         };
-        let filtered = response.pole.is_some() || response.sensor.is_some();
-        let start = self.start.as_ref().filter(|_| filtered);
+        let start = self.start.as_ref().filter(|_| response.smooths());
         Shift {
             onset: self.onset,
             step: self.step,

@@ -87,6 +87,8 @@ pub(crate) struct Limits {
     /// Standard uncertainty of each quantity's zero that the weights do not know;
     /// SI.
     pub offsets: [f64; QUANTITIES],
+    /// Whether to end at the minimum for instantaneous samples.
+    pub instants: bool,
     /// Intervals wanted; `None` while the noise is still being found.
     pub intervals: Option<IntervalPlan>,
 }
@@ -173,7 +175,10 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     let (minimum, spent) = over_onsets(&estimator, minimum, &options(free, limits));
     evaluations += spent;
     let smooth = minimum;
-    let (minimum, spent) = polished(&estimator, minimum, &options(free, limits));
+    let (minimum, spent) = match limits.instants {
+        true => polished(&estimator, minimum, &options(free, limits)),
+        false => (minimum, 0),
+    };
     evaluations += spent;
     let mut solution = complete(law_count, &estimator, &minimum, &limits.offsets)?;
     solution.evaluations += evaluations;

@@ -5,6 +5,9 @@ use crate::measured::{MeasuredItem, MeasuredItems, MeasuredValue, plain_value, v
 use windfall_campaign::recording::channel::channel_samples;
 use windfall_campaign::recording::read::recording_path;
 use windfall_campaign::settings::model::ImpactEntry;
+use windfall_compression::fit::{
+    CompressionEstimate, CompressionFit, LoadingCurve, fit_compression,
+};
 use windfall_contact::apparent_modulus::{PressedContact, PrincipalRadii, stiffness_per_modulus};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::parameter::Elastic;
@@ -12,9 +15,6 @@ use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
-use windfall_identify::compression_fit::{
-    CompressionEstimate, CompressionFit, LoadingCurve, fit_compression,
-};
 use windfall_signal::compression::{
     CompressionCurve, FitRange, LoadingEnd, compression_curve, fitted_range,
 };

@@ -1,7 +1,7 @@
 //! A slow compression as a figure: force against deformation, with the laws.
 
+use windfall_compression::fit::{CompressionFit, LoadingCurve};
 use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
-use windfall_identify::compression_fit::{CompressionFit, LoadingCurve};
 use windfall_signal::compression::{CompressionCurve, CurvePoint};
 
 /// The loading curve with the fitted range, the laws, the yield and the softening.

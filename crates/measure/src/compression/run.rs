@@ -14,11 +14,11 @@ use windfall_campaign::pipeline::request::{
 };
 use windfall_campaign::recording::read::read_recording;
 use windfall_campaign::settings::model::{Campaign, ImpactEntry};
+use windfall_compression::fit::fit_compression;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::{Named, grouped};
-use windfall_identify::compression_fit::fit_compression;
 use windfall_signal::recording::Recording;
 
 const SHOWN: [ShownValue; 12] = [

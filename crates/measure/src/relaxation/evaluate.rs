@@ -5,14 +5,14 @@ use crate::relaxation::read::RelaxationCampaign;
 use windfall_campaign::recording::channel::channel_samples;
 use windfall_campaign::recording::read::recording_path;
 use windfall_campaign::settings::model::ImpactEntry;
+use windfall_compression::fit::CompressionEstimate;
+use windfall_compression::relaxation::hold::{Hold, HoldEnd, find_hold};
+use windfall_compression::relaxation::maxwell::{HeldForce, MaxwellFit, fit_maxwell};
+use windfall_compression::relaxation::peleg::{PelegFit, fit_peleg};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::Named;
 use windfall_files::text::number::plain;
-use windfall_identify::compression_fit::CompressionEstimate;
-use windfall_identify::relaxation::hold::{Hold, HoldEnd, find_hold};
-use windfall_identify::relaxation::maxwell::{HeldForce, MaxwellFit, fit_maxwell};
-use windfall_identify::relaxation::peleg::{PelegFit, fit_peleg};
 use windfall_signal::kinematics::value_at;
 use windfall_signal::recording::{Quantity, Recording};
 

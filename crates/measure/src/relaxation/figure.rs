@@ -1,9 +1,9 @@
 //! A hold as a figure: force over time, with the models.
 
 use crate::relaxation::evaluate::Relaxed;
+use windfall_compression::relaxation::maxwell::maxwell_force;
+use windfall_compression::relaxation::peleg::peleg_force;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
-use windfall_identify::relaxation::maxwell::maxwell_force;
-use windfall_identify::relaxation::peleg::peleg_force;
 
 /// Points of a line.
 const POINTS: usize = 300;

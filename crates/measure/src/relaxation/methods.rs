@@ -2,7 +2,7 @@
 
 use crate::relaxation::read::RelaxationCampaign;
 use crate::words::{SPREAD, plain};
-use windfall_identify::relaxation::maxwell::Elements;
+use windfall_compression::relaxation::maxwell::Elements;
 
 /// Stress relaxation.
 pub fn methods_of_relaxation(campaign: &RelaxationCampaign) -> Vec<String> {

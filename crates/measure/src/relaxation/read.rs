@@ -8,11 +8,11 @@ use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use windfall_campaign::settings::model::Campaign;
 use windfall_campaign::settings::shared::read_shared;
+use windfall_compression::relaxation::maxwell::{Elements, MOST_ELEMENTS};
 use windfall_files::error::Error;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, number_that, parse_source, positive_quantity, read_source, refused,
 };
-use windfall_identify::relaxation::maxwell::{Elements, MOST_ELEMENTS};
 
 /// A campaign of stress relaxation.
 #[derive(Clone, Debug)]

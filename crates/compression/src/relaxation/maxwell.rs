@@ -1,6 +1,6 @@
 //! The generalised Maxwell model of stress relaxation.
 
-use crate::compression_fit::CompressionEstimate;
+use crate::fit::CompressionEstimate;
 use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE, options};
 use crate::relaxation::ramp::left_after_ramp;
 use windfall_numerics::cholesky;

@@ -4,8 +4,8 @@
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use windfall_compression::fit::{CompressionFit, LoadingCurve, fit_compression};
 use windfall_contact::expression::parse_law;
-use windfall_identify::compression_fit::{CompressionFit, LoadingCurve, fit_compression};
 
 /// A loading at a constant rate, first touch at 0.3 mm and recorded from 0.36 mm
 /// on, with noise of force.

@@ -1,6 +1,6 @@
 //! Peleg's two constants of stress relaxation.
 
-use crate::compression_fit::CompressionEstimate;
+use crate::fit::CompressionEstimate;
 use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE, options};
 use windfall_numerics::least_squares::{Bounds, Stop, minimise};
 
