@@ -128,8 +128,8 @@ fn pinned_numbers_are_those_of_the_revision() {
     let expected = (
         9,
         [
-            "9642042d3193d26b",
-            "7001abb2f4222f2a",
+            "9b20d6a79a4eb026",
+            "e6be9b409addacb1",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

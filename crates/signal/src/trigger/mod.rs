@@ -311,11 +311,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         contacts.trend_sd = wander(signal.values, &quiet, height.abs());
         contacts.quiet = quiet.clone();
         contacts.offset = if keeps { 0.0 } else { mean };
-        let raised: Vec<f64> = signal
-            .values
-            .iter()
-            .map(|v| sign * (v - contacts.offset))
-            .collect();
+        let raised = raised(signal.values, contacts.offset, sign);
         let noise = |length: usize| {
             let averaged = sums.means_in(quiet.clone(), length);
             smoothed_noise(&averaged, usual.max(sample_noise), length)
@@ -360,6 +356,11 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         rise = 0.5 * (first.end - first.onset);
         before = signal.times.partition_point(|&t| t < until);
     }
+}
+
+/// A signal above its zero, positive in contact.
+fn raised(values: &[f64], zero: f64, sign: f64) -> Vec<f64> {
+    values.iter().map(|value| sign * (value - zero)).collect()
 }
 
 /// The error of a signal that does not reach its threshold.
