@@ -4,6 +4,7 @@ pub mod batch;
 pub mod batch_law;
 mod batch_motion;
 mod bootstrap;
+pub mod detail;
 pub mod estimator;
 mod free;
 pub mod identifiability;
