@@ -9,6 +9,7 @@ mod command_line;
 mod compare;
 mod counted;
 mod design;
+mod detail;
 mod drop;
 mod drop_eccentric;
 mod faults;

@@ -15,7 +15,7 @@ use windfall_contact::expression::LawExpression;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::progress::Progress;
-use windfall_identify::fit::problem::LawProblem;
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
 use windfall_identify::fit::result::fit_impact;
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::Finding;
@@ -115,9 +115,7 @@ pub fn fit_law(
     law: &LawExpression,
 ) -> Result<ImpactOutcome, Error> {
     let problem = law_problem(law, &campaign.fit);
-    let mut options = campaign.fit.options;
-    // Each impact its own chance, whatever the others are.
-    options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
+    let options = options_of(campaign, entry);
     let fit = fit_impact(impact, rig, &problem, &options)
         .map_err(|source| Error::identify(law.kind.name(), source))?;
     let mut outcome = impact_outcome(
@@ -130,6 +128,13 @@ pub fn fit_law(
     );
     add_angles(campaign, entry, &mut outcome)?;
     Ok(outcome)
+}
+
+/// How one impact is fitted: each has its own chance, whatever the others are.
+pub(crate) fn options_of(campaign: &ImpactCampaign, entry: &ImpactEntry) -> FitOptions {
+    let mut options = campaign.fit.options;
+    options.intervals.seed = seed_of_name(options.intervals.seed, &entry.id);
+    options
 }
 
 /// A seed for each name (Fowler, Noll and Vo's hash, 1a).

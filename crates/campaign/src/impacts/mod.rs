@@ -4,6 +4,7 @@ pub mod answer;
 pub mod bench;
 pub mod card;
 pub mod csv;
+mod detail;
 pub mod failed_fit;
 pub mod figure_impact;
 pub mod findings;

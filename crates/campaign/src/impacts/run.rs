@@ -2,6 +2,7 @@
 
 use crate::impacts::bench::{estimate_bench, find_rig};
 use crate::impacts::card::card_of_fit;
+use crate::impacts::detail::write_details;
 use crate::impacts::figure_impact::figure_of_impact;
 use crate::impacts::fit::Fits;
 use crate::impacts::mass::RigFound;
@@ -152,6 +153,9 @@ fn fit(
     let digests = evaluated.digests;
     if let Some(folder) = &request.figures {
         draw(&campaign, &rig, &outcome, folder)?;
+    }
+    if let Some(folder) = &request.detail {
+        write_details(&campaign, &rig.rig, &outcome, folder)?;
     }
     if let Some(path) = &request.card {
         write_card(path, &card_of_fit(&campaign, &outcome)?)?;

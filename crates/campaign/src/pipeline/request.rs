@@ -89,6 +89,10 @@ pub struct FitRequest {
     /// A figure of each recording
     #[cfg_attr(feature = "clap", command(flatten))]
     pub figures: Option<FigureFolder>,
+    /// Write samples, residuals, weights, covariance and draws of each fit into this directory, as
+    /// ID-LAW.json for arviz.from_json; fits every impact once more
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath))]
+    pub detail: Option<PathBuf>,
     /// Write the law as a law card: the median fruit, how fruit differ, and in what it was seen
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "rig"))]
     pub card: Option<PathBuf>,
@@ -108,7 +112,8 @@ impl FitRequest {
     pub fn check_outputs(&self) -> Result<(), Error> {
         let figures = self.figures.as_ref().map(|own| own.directory.as_path());
         let further = self.outputs.iter().map(|own| Some(own.as_path()));
-        check_outputs([figures, self.card.as_deref()].into_iter().chain(further))
+        let own = [figures, self.detail.as_deref(), self.card.as_deref()];
+        check_outputs(own.into_iter().chain(further))
     }
 }
 
@@ -372,6 +377,7 @@ pub fn apply_request_to_measurement(
         ("--law and --free", laws && !fits_laws),
         ("--laws", request.laws_file.is_some()),
         ("--card", request.card.is_some()),
+        ("--detail", request.detail.is_some()),
         ("--prior", !request.priors.is_empty()),
         ("--bounds", !request.bounds.is_empty()),
         ("--quantities", !request.quantities.is_empty()),

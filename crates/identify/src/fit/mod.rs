@@ -5,6 +5,7 @@ pub mod batch_law;
 mod batch_motion;
 mod bootstrap;
 mod condensed;
+pub mod detail;
 pub mod estimator;
 mod free;
 pub mod identifiability;

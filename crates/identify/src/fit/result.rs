@@ -37,6 +37,16 @@ pub fn fit_impact(
     problem: &LawProblem,
     options: &FitOptions,
 ) -> Result<Fit, Error> {
+    solved(impact, rig, problem, options).map(|(fit, _, _)| fit)
+}
+
+/// [`fit_impact`] with what it rests on.
+pub(crate) fn solved<'a>(
+    impact: &'a Impact,
+    rig: &Rig,
+    problem: &'a LawProblem,
+    options: &'a FitOptions,
+) -> Result<(Fit, Plan<'a>, Solution), Error> {
     rig.check()?;
     let mut plan = plan(impact, rig, problem, options)?;
     let solution = plan.solve(rig)?;
@@ -61,7 +71,7 @@ pub fn fit_impact(
             quantities: all.iter().map(|(_, words)| words.clone()).collect(),
         }),
     });
-    Ok(fit)
+    Ok((fit, plan, solution))
 }
 
 /// Fits several laws to one impact with one noise for all, that of the law that

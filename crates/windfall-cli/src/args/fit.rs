@@ -27,6 +27,8 @@ Examples:
       the cost function and the weights of the 2003 pendulum study
   windfall fit my-campaign --intervals profile
       intervals that follow the likelihood, in place of estimate ± t × deviation
+  windfall fit my-campaign --intervals posterior --detail fits
+      residuals, covariances and draws of each fit: `arviz.from_json(\"fits/….json\")`
   windfall fit my-campaign --watch
       while you measure: each new recording is listed by [files] names, fitted and shown
   windfall fit impact.csv --rig pendulum --inertia '0.01435 kg m^2' --arm '0.505 m' \\
@@ -45,7 +47,7 @@ pub struct FitArguments {
     pub format: Format,
     /// Fit each recording that lands in DIR/raw, as soon as it stops growing, and show the mean
     /// so far, until Ctrl-C
-    #[arg(long, conflicts_with_all = ["figures", "card", "rig"])]
+    #[arg(long, conflicts_with_all = ["figures", "detail", "card", "rig"])]
     pub watch: bool,
     /// Rig and channels of a recording without a campaign
     #[command(flatten)]
