@@ -149,6 +149,9 @@ fn one_motion(
     }
     measured.force_delay = Some(delay);
     measured.force_delay_sd = Some(sd);
+    if found.sparse {
+        return;
+    }
     measured.motion_misfit = Some(found.misfit);
     measured.motion_noise = Some(found.noise);
     if delay.abs() > (CLEAR * sd).max(LATE * place.duration()) {

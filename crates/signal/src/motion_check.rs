@@ -12,8 +12,10 @@ use std::ops::Range;
 /// Free motion on either side of the contact that is compared too; contact durations.
 const SIDES: f64 = 0.5;
 
-/// Fewest samples of either channel in contact.
+/// Fewest samples of the force in contact, and fewest edges of a count.
 const LEAST_SAMPLES: usize = 20;
+/// Fewest samples of the displacement in contact: five coefficients, and as much again beside it.
+const LEAST_PLACES: usize = 6;
 
 /// Steps towards the delay; each is exact for small changes.
 const STEPS: usize = 20;
@@ -29,6 +31,9 @@ pub struct MotionCheck {
     pub misfit: f64,
     /// What the noise of the displacement, or the timing of its counts, leaves of it; m.
     pub noise: f64,
+    /// Whether the displacement has so few samples in contact that many such impacts say
+    /// something together, and none by itself.
+    pub sparse: bool,
 }
 
 /// Compares a displacement with the force of the same contact, integrated twice:
@@ -46,8 +51,8 @@ pub struct MotionCheck {
 /// * `mass`: what the contact accelerates; kg
 /// * `response`: what the instruments make of both; the bending of an arm counts as at rest
 ///
-/// `None` with fewer than twenty samples of either in contact, or where they do not
-/// determine the coefficients.
+/// `None` with fewer than twenty samples of the force or six of the displacement in contact, or
+/// where they do not determine the coefficients.
 pub(crate) fn check_motion(
     (force, displacement): (&Track, &Track),
     place: &Surroundings,
@@ -62,11 +67,12 @@ pub(crate) fn check_motion(
     let within = |times: &[f64], from: f64, until: f64| {
         times.partition_point(|&t| t < from)..times.partition_point(|&t| t <= until)
     };
-    for track in [force, displacement] {
-        if within(&track.times, place.onset, place.end).len() < LEAST_SAMPLES {
+    for (track, least) in [(force, LEAST_SAMPLES), (displacement, LEAST_PLACES)] {
+        if within(&track.times, place.onset, place.end).len() < least {
             return None;
         }
     }
+    let sparse = within(&displacement.times, place.onset, place.end).len() < LEAST_SAMPLES;
     let part = within(&displacement.times, from, until);
     let (times, places, noise) = exact(displacement, part);
     let (times, places) = (&times[..], &places[..]);
@@ -97,6 +103,7 @@ pub(crate) fn check_motion(
             delay: Uncertain::new(delay, sd(4) / inverse_gain),
             misfit: fit.scatter,
             noise,
+            sparse,
         });
         if step.abs() < 0.01 * sd(4) / inverse_gain {
             break;

@@ -227,6 +227,8 @@ fn impulse_unbalanced(impact: &ImpactOutcome, rig: &Rig) -> Option<FindingOutcom
 }
 
 fn force_late_or_scaled(impact: &ImpactOutcome) -> Option<FindingOutcome> {
+    // With too few samples for a misfit, impacts say something together only.
+    signal(impact, "motion_misfit")?;
     let (gain, gain_sd) = signal(impact, "force_gain")?;
     let (delay, delay_sd) = signal(impact, "force_delay")?;
     let (duration, _) = signal(impact, "contact_duration")?;

@@ -75,6 +75,13 @@ pub const WRITTEN: &[Output] = &[
     ),
     (
         "fit",
+        "--detail",
+        Kind::Folder,
+        "fit campaign --detail {}",
+        CAMPAIGN,
+    ),
+    (
+        "fit",
         "--card",
         Kind::File,
         "fit campaign --card {}",
