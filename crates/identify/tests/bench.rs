@@ -30,6 +30,11 @@ fn parameters(index: u64) -> (f64, f64, f64) {
 
 /// An impact as instruments with a fault record it.
 fn impact(index: u64, response: &Response, delay: f64) -> Impact {
+    impact_of_noise(index, (response, delay), 1.0)
+}
+
+/// The same with another noise of the force; N.
+fn impact_of_noise(index: u64, (response, delay): (&Response, f64), noise: f64) -> Impact {
     let (k, c, velocity) = parameters(index);
     let law = parse_law(&format!("kuwabara-kono(k={k}, c={c})")).unwrap();
     let law = law.complete().unwrap();
@@ -51,7 +56,10 @@ fn impact(index: u64, response: &Response, delay: f64) -> Impact {
         motion.force[i] += errors[0][i];
         motion.displacement[i] += errors[1][i];
     }
-    let instrument = pendulum_instrument();
+    let mut instrument = pendulum_instrument();
+    if let Some(force) = &mut instrument.force {
+        force.noise = noise;
+    }
     let raw = record(&motion, &instrument, index).unwrap();
     let options = ExtractOptions {
         trigger: TriggerOptions {
@@ -207,4 +215,29 @@ fn recovers_stiffness_and_damping_behind_a_sensor_that_swings() {
         );
     }
     assert!(mended.iter().all(|z| z.abs() < 3.0), "{mended:?}");
+}
+
+/// Thirty times less noise: the shift of each fit is many of its deviations.
+#[test]
+fn comes_to_rest_behind_a_sensor_with_little_noise() {
+    let response = Response {
+        sensor: Some(Swing {
+            frequency: 2e3,
+            damping: 0.05,
+        }),
+        ..Response::default()
+    };
+    let options = FitOptions {
+        response,
+        ..FitOptions::default()
+    };
+    for index in 0..16 {
+        let own = impact_of_noise(index, (&response, 0.0), 0.03);
+        let fit = fit_impact(&own, &rig(), &problem(), &options).unwrap();
+        let (k, c, _) = parameters(index);
+        for (i, truth) in [k, c].into_iter().enumerate() {
+            let off = fit.parameters[i].value / truth - 1.0;
+            assert!(off.abs() < 2e-3, "{index}: {off}");
+        }
+    }
 }
