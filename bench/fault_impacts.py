@@ -85,7 +85,9 @@ class Record:
         else:
             columns = [volts, counts]
             head, form = "force_V,count", ["%.7g", "%d"]
-        np.savetxt(path, np.column_stack(columns), delimiter=",", header=head, comments="", fmt=form)
+        form = ",".join(form)
+        lines = [form % row for row in zip(*(column.tolist() for column in columns), strict=True)]
+        path.write_text("\n".join([head, *lines, ""]))
 
 
 def motion(k, c, velocity):
@@ -121,7 +123,8 @@ def motion(k, c, velocity):
                 y = found.sol(times[where])
                 x[where] = y[0]
                 if found is contact:
-                    loads[where] = [max(force(d, v), 0.0) for d, v in y.T]
+                    depth, rate = np.maximum(y[0], 0.0), y[1]
+                    loads[where] = np.maximum(k * depth**1.5 + c * np.sqrt(depth) * rate, 0.0)
         return x, loads
 
     return at, end

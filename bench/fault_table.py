@@ -58,7 +58,7 @@ def write_campaign(folder, records, threshold, inertia=fault_impacts.INERTIA):
         arm=fault_impacts.ARM,
         mass=fault_impacts.MASS,
         centre=fault_impacts.CENTRE,
-        times='time = "time_s"' if first.timed else 'rate = "200 kHz"',
+        times='time = "time_s"' if first.timed else f'rate = "{fault_impacts.RATE:g} Hz"',
         sensitivity=1e3 * fault_impacts.SENSITIVITY / first.told_force,
         counts=int(fault_impacts.COUNTS * first.told_counts),
         threshold=threshold,

@@ -6,6 +6,7 @@ Each motion is recorded by every bench. "named": campaigns whose finding names t
 
 import argparse
 import concurrent.futures
+import functools
 import importlib.util
 import os
 import pathlib
@@ -95,6 +96,7 @@ else:
     print("not made: fruit of other laws, whose simulator is not there", file=sys.stderr)
 
 
+@functools.cache
 def other_hand():
     spec = importlib.util.spec_from_file_location("rig", RIG)
     rig = importlib.util.module_from_spec(spec)
@@ -116,8 +118,8 @@ def on_a_base(rig, k, c, velocity):
     w = 2 * np.pi * frequency
 
     def force(state):
-        depth, rate = state[0] - state[2], state[1] - state[3]
-        return max(k * max(depth, 0) ** 1.5 + c * max(depth, 0) ** 0.5 * rate, 0)
+        depth, rate = np.maximum(state[0] - state[2], 0), state[1] - state[3]
+        return np.maximum(k * depth**1.5 + c * np.sqrt(depth) * rate, 0)
 
     def slope(_, state):
         own = force(state)
@@ -137,8 +139,7 @@ def on_a_base(rig, k, c, velocity):
         inside = motion.sol(np.clip(times, 0, end))
         free = np.where(times < 0, velocity / swing * np.sin(swing * times), x * np.cos(swing * (times - end)) + v / swing * np.sin(swing * (times - end)))
         contact = (times >= 0) & (times <= end)
-        forces = np.array([force(state) if touches else 0.0 for state, touches in zip(inside.T, contact)])
-        return np.where(contact, inside[0], free), forces
+        return np.where(contact, inside[0], free), np.where(contact, force(inside), 0.0)
 
     return at, end
 

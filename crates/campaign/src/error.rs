@@ -49,8 +49,8 @@ pub enum CampaignError {
     /// A quantity of the bench that the impacts do not determine.
     #[error(
         "{path}: [fit] estimate: {quantity} cannot be determined: {told} of the impacts show the \
-         {what} of the force against the displacement, and at least 5 are needed; take it out of \
-         `estimate`", path = path.display()
+         {what} of the force against the displacement, by samples and counts shorter than 0.3 of \
+         the contact, and at least 5 are needed; take it out of `estimate`", path = path.display()
     )]
     BenchUntold {
         /// The campaign directory.

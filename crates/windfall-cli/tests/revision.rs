@@ -126,10 +126,10 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        8,
+        9,
         [
-            "9c72f59574e33e9d",
-            "ea543ccca8603f72",
+            "9642042d3193d26b",
+            "7001abb2f4222f2a",
             "91551cac97612078",
             "362e0649b943bd49",
             "3e453baf43c8c589",

@@ -5,7 +5,7 @@ use crate::error::CampaignError;
 use crate::impacts::mass::{RigFound, rig_of};
 use crate::impacts::response::estimate_response;
 use crate::recording::extract::extract_recording;
-use crate::result::bench::pooled;
+use crate::result::bench::{COARSEST, pooled};
 use crate::result::counted::excluded;
 use crate::settings::bench::is_of_response;
 use crate::settings::model::{BenchFound, ImpactCampaign, MassPlan, RigPlan};
@@ -76,7 +76,7 @@ pub(crate) fn estimate_bench(campaign: &mut ImpactCampaign) -> Result<(), Error>
             (sd > 0.0).then(|| (Uncertain::new(value, sd), sharpness))
         };
         let own: Vec<_> = measured.iter().filter_map(of).collect();
-        let told = own.len();
+        let told = own.iter().filter(|(_, own)| own.0 <= COARSEST).count();
         let found = pooled(pooled_name, own);
         let Some(found) = found else {
             return Err(Error::from(CampaignError::BenchUntold {

@@ -20,8 +20,8 @@ use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_identify::rig::kind::Rig;
 use windfall_signal::uncertain::Uncertain;
 
-/// Rounds of fits and estimates: the second begins where the first has come.
-const ROUNDS: usize = 2;
+/// Rounds of fits and estimates: each begins where the one before has come. A fourth moves nothing.
+const ROUNDS: usize = 3;
 /// Impacts at most whose residuals are asked for a cause.
 const ASKED: usize = 24;
 /// Difference of AICc from which a cause is said to explain residuals better.

@@ -18,10 +18,13 @@ const FEWEST: usize = 5;
 const OWN_FAULT: f64 = 6.0;
 /// Part of its value, or of the contact, by which an estimate is far from what is told; 1.
 const FAR: f64 = 0.1;
-/// What a resolution of r shifts: the gain by this times r², the delay by this times r² T. Of
-/// simulated impacts on a perfect bench, 5 to 200 kHz, 2000 to 360,000 counts a turn.
-const GAIN_BY_BLUR: f64 = 5.0;
-const DELAY_BY_BLUR: f64 = 1.5;
+/// What a resolution of r may shift: the gain by a r² + b r⁴, the delay by that times T. Of
+/// simulated impacts on a perfect bench, 5 to 200 kHz, 11,000 to 360,000 counts a turn: the time
+/// between samples shifts by less than 0.3 r², counts by nothing that is seen up to r = 0.05.
+const GAIN_BY_BLUR: [f64; 2] = [0.3, 50.0];
+const DELAY_BY_BLUR: [f64; 2] = [0.1, 25.0];
+/// The coarsest resolution at which force and displacement say anything of each other; 1.
+pub(crate) const COARSEST: f64 = 0.3;
 /// Deviations by which a value must differ from that of a perfect bench.
 const CLEAR: f64 = 4.0;
 
@@ -58,17 +61,24 @@ pub fn pooled_bench(impacts: &[ImpactOutcome]) -> Named<PooledOutcome> {
 ///
 /// * `name`: "force_gain" or "force_delay"
 /// * `values`: with resolution and duration of each contact; 1, s
-pub(crate) fn pooled(name: &str, values: Vec<(Uncertain, (f64, f64))>) -> Option<PooledOutcome> {
+///
+/// Contacts coarser than [`COARSEST`] are not asked.
+pub(crate) fn pooled(
+    name: &str,
+    mut values: Vec<(Uncertain, (f64, f64))>,
+) -> Option<PooledOutcome> {
+    values.retain(|(_, (resolution, _))| *resolution <= COARSEST);
     let middle = |of: fn(&(f64, f64)) -> f64| {
         let own: Vec<f64> = values.iter().map(|(_, own)| of(own)).collect();
         robust_spread(&own).map(|(median, _)| median)
     };
     let (resolution, duration) = (middle(|own| own.0)?, middle(|own| own.1)?);
-    let blur = resolution * resolution;
+    let blur =
+        |[square, fourth]: [f64; 2]| resolution.powi(2) * (square + fourth * resolution.powi(2));
     let own = values.into_iter().map(|(own, _)| own);
     if name == "force_delay" {
         let mean = averaged(own.collect())?;
-        let sd = mean.sd.hypot(DELAY_BY_BLUR * blur * duration);
+        let sd = mean.sd.hypot(blur(DELAY_BY_BLUR) * duration);
         return Some(PooledOutcome { sd, ..mean });
     }
     let inverse = |value: f64, sd: f64| (1.0 / value, sd / (value * value));
@@ -77,7 +87,7 @@ pub(crate) fn pooled(name: &str, values: Vec<(Uncertain, (f64, f64))>) -> Option
         Uncertain::new(value, sd)
     });
     let mean = averaged(inverted.collect())?;
-    let (value, sd) = inverse(mean.value, mean.sd.hypot(GAIN_BY_BLUR * blur));
+    let (value, sd) = inverse(mean.value, mean.sd.hypot(blur(GAIN_BY_BLUR)));
     Some(PooledOutcome { value, sd, ..mean })
 }
 

@@ -2,7 +2,6 @@
 
 use crate::bench::kind::{Cause, MOST};
 use crate::bench::residuals::{BenchFault, BenchResiduals};
-use crate::fit::uncertainty::sandwich;
 use windfall_numerics::least_squares::{Bounds, LeastSquares, NormalEquations, Options, minimise};
 
 /// Step of the derivatives, in the coordinate of each parameter.
@@ -145,24 +144,19 @@ impl Search<'_> {
         starts
     }
 
-    /// Covariance by the scatter of what each impact says.
+    /// Covariance by how far the estimate moves without each impact.
     ///
     /// # Source
-    /// Liang and Zeger (1986), Biometrika 73:13, with n/(n − 1).
+    /// Bell and McCaffrey (2002), Survey Methodology 28:169, the jackknife over clusters (CR3),
+    /// with (n − 1)/n; the move is that of one Gauss-Newton step.
     fn scatter(&self, at: &[f64; MOST]) -> Option<[[f64; MOST]; MOST]> {
-        let each: Vec<NormalEquations<MOST>> = self
-            .impacts
-            .iter()
-            .map(|own| self.equations_of(own, at))
-            .collect();
+        let each = self.impacts.iter().map(|own| self.equations_of(own, at));
+        let each: Vec<NormalEquations<MOST>> = each.collect();
         let mut all = NormalEquations::<MOST>::ZERO;
-        let mut meat = [[0.0; MOST]; MOST];
-        let n = each.len() as f64;
         for own in &each {
-            for i in 0..MOST {
-                for j in 0..MOST {
-                    all.normal[i][j] += own.normal[i][j];
-                    meat[i][j] += own.gradient[i] * own.gradient[j] * n / (n - 1.0).max(1.0);
+            for (sums, own) in all.normal.iter_mut().zip(&own.normal) {
+                for (sum, own) in sums.iter_mut().zip(own) {
+                    *sum += own;
                 }
             }
         }
@@ -171,8 +165,29 @@ impl Search<'_> {
                 all.normal[i][i] = 1.0;
             }
         }
-        let bread = all.inverse(MOST)?;
-        Some(sandwich(&bread, &meat, MOST))
+        let share = 1.0 - 1.0 / each.len() as f64;
+        let mut covariance = [[0.0; MOST]; MOST];
+        for own in &each {
+            let mut others = all;
+            for i in 0..MOST {
+                for j in 0..MOST {
+                    others.normal[i][j] -= own.normal[i][j];
+                }
+            }
+            let inverse = others.inverse(MOST)?;
+            let moved = inverse.map(|row| {
+                row.iter()
+                    .zip(&own.gradient)
+                    .map(|(a, b)| a * b)
+                    .sum::<f64>()
+            });
+            for i in 0..MOST {
+                for j in 0..MOST {
+                    covariance[i][j] += share * moved[i] * moved[j];
+                }
+            }
+        }
+        Some(covariance)
     }
 }
 

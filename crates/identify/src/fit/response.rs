@@ -11,6 +11,10 @@ use windfall_signal::response::Response;
 /// Largest error of an instrument that measures the contact, as a part of what it measures; 1.
 const MOST: f64 = 0.5;
 
+/// Steps after first touch whose impulse is made right, and parts that each is summed in.
+const FIRST: usize = 4;
+const PARTS: usize = 16;
+
 /// What the instruments add to force and displacement, from first touch on.
 #[derive(Clone, Debug)]
 pub(crate) struct Shift {
@@ -48,8 +52,24 @@ impl Motion<'_> {
         let step = response.step(interval);
         let count = ((until - self.onset) / step).ceil().max(1.0) as usize + 2;
         let times: Vec<f64> = (0..count).map(|i| i as f64 * step).collect();
-        let motion = trajectory(self.law, self.rig, self.velocity, &times, self.end)?;
-        Ok((step, motion.force))
+        let mut force = trajectory(self.law, self.rig, self.velocity, &times, self.end)?.force;
+        force[0] = self.begins(step, &force)?;
+        Ok((step, force))
+    }
+
+    /// The force at first touch with which straight lines between the steps have the impulse of
+    /// the curve; N.
+    ///
+    /// A damped force rises as the square root of time, and what swings would be excited by too
+    /// small an impulse.
+    fn begins(&self, step: f64, force: &[f64]) -> Result<f64, Error> {
+        let steps = FIRST.min(force.len() - 1);
+        let part = step / PARTS as f64;
+        let times: Vec<f64> = (0..=steps * PARTS).map(|i| i as f64 * part).collect();
+        let fine = trajectory(self.law, self.rig, self.velocity, &times, self.end)?.force;
+        let impulse = part * trapezoids(&fine);
+        let rest = step * (trapezoids(&force[..=steps]) - 0.5 * force[0]);
+        Ok(2.0 * (impulse - rest) / step)
     }
 }
 
@@ -97,6 +117,12 @@ impl Shift {
         };
         value_at(curve, (time - self.onset) / self.step)
     }
+}
+
+/// Sum of a curve at unit distance, with halves at both ends.
+fn trapezoids(curve: &[f64]) -> f64 {
+    let ends = curve[0] + curve[curve.len() - 1];
+    curve.iter().sum::<f64>() - 0.5 * ends
 }
 
 /// The value of a curve at a place between its points: nothing before the first, and the last
