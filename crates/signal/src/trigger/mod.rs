@@ -262,7 +262,6 @@ pub struct Signal<'a> {
 pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contacts, Error> {
     check(signal, options)?;
     let n = signal.values.len();
-
     // A first guess of zero and sign.
     let (pilot, zero_from_end) = pilot_level(signal.values);
     let keeps = options.baseline == Baseline::Keep;
@@ -285,7 +284,6 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     );
     let sign = if reversed { -1.0 } else { 1.0 };
     let averaged = sums.means(smoothing);
-
     // Baseline, threshold and windows; once more when the first contact is known.
     // Where nothing stands out, all is baseline.
     let mut before = if visible {
