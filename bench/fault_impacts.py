@@ -94,11 +94,11 @@ def motion(k, c, velocity):
     """Displacement and force of a pendulum on a Kuwabara-Kono contact, touching at 0."""
 
     def force(d, v):
-        d = max(d, 0.0)
-        return k * d**1.5 + c * d**0.5 * v
+        d = np.maximum(d, 0.0)
+        return k * d**1.5 + c * np.sqrt(d) * v
 
     def loaded(_, y):
-        return [y[1], -max(force(*y), 0.0) / EFFECTIVE_MASS - SWING * y[0]]
+        return [y[1], -np.maximum(force(*y), 0.0) / EFFECTIVE_MASS - SWING * y[0]]
 
     def free(_, y):
         return [y[1], -SWING * y[0]]
@@ -123,8 +123,7 @@ def motion(k, c, velocity):
                 y = found.sol(times[where])
                 x[where] = y[0]
                 if found is contact:
-                    depth, rate = np.maximum(y[0], 0.0), y[1]
-                    loads[where] = np.maximum(k * depth**1.5 + c * np.sqrt(depth) * rate, 0.0)
+                    loads[where] = np.maximum(force(*y), 0.0)
         return x, loads
 
     return at, end

@@ -4,15 +4,15 @@
 //! compressions of one fruit at several rates; every curve has a first touch of
 //! its own.
 
+use crate::correlated_scores::{
+    add_product, add_scores, at_least, correlation_lag, inverse_of_free, quadratic, sandwich,
+    student,
+};
 pub use crate::problem::LoadingCurve;
 use crate::problem::{Problem, SIZE};
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::{Law, LawKind};
-use windfall_identify::compare::correlated_scores::{
-    add_product, add_scores, at_least, correlation_lag, inverse_of_free, quadratic, sandwich,
-    student,
-};
 use windfall_numerics::least_squares::{Bounds, LeastSquares, Minimum, Options, Stop, minimise};
 
 /// One estimate.

@@ -3,6 +3,7 @@
 //!
 //! This crate opens no file and reads no clock.
 
+mod correlated_scores;
 pub mod fit;
 mod problem;
 pub mod relaxation;

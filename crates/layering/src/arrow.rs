@@ -9,8 +9,8 @@ const ARROWS: &[(&str, &str)] = &[
     ("contact", "numerics"),
     ("signal", "statistics numerics"),
     ("repeat", "signal statistics numerics"),
+    ("compression", "contact signal statistics numerics"),
     ("identify", "contact signal statistics numerics"),
-    ("compression", "identify contact signal numerics"),
     ("drop-rig", "statistics identify signal contact numerics"),
     ("scene", "contact numerics"),
     ("source", ""),
@@ -25,7 +25,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "measure",
-        "campaign draw files repeat compression identify contact signal numerics",
+        "campaign draw files repeat compression contact signal numerics",
     ),
     ("inspect", "campaign draw files formats numerics statistics"),
     (

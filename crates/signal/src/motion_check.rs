@@ -14,7 +14,8 @@ const SIDES: f64 = 0.5;
 
 /// Fewest samples of the force in contact, and fewest edges of a count.
 const LEAST_SAMPLES: usize = 20;
-/// Fewest samples of the displacement in contact: five coefficients, and as much again beside it.
+/// Fewest samples of the displacement in contact. With those of the free motion on either side
+/// they are about twice as many as the coefficients.
 const LEAST_PLACES: usize = 6;
 
 /// Steps towards the delay; each is exact for small changes.

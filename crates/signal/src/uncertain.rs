@@ -42,6 +42,46 @@ pub fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
     Some(Uncertain::new(mean, (excess / total).sqrt()))
 }
 
+/// Mean of values that differ by more than their uncertainties, as taps do: each is weighted
+/// by its own variance and that [between](variance_between) them.
+///
+/// The uncertainty is that of the mean: between values it is estimated from their spread, and a
+/// single value keeps its own. `None` without values.
+pub fn mean_of_differing(values: &[Uncertain]) -> Option<Uncertain> {
+    let between = variance_between(values);
+    let total: f64 = values.iter().map(|own| weight(own, between)).sum();
+    let parts = values.iter().map(|own| weight(own, between) * own.value);
+    let value = parts.sum::<f64>() / total;
+    (!values.is_empty()).then(|| Uncertain::new(value, total.sqrt().recip()))
+}
+
+/// Variance between values, beyond their uncertainties; 0 where these explain the spread, or
+/// without values.
+///
+/// # Source
+/// DerSimonian and Laird (1986), Control. Clin. Trials 7:177.
+pub fn variance_between(values: &[Uncertain]) -> f64 {
+    let weights = values.iter().map(|own| weight(own, 0.0));
+    let total: f64 = weights.clone().sum();
+    let parts = weights.clone().zip(values);
+    let mean = parts.map(|(w, own)| w * own.value).sum::<f64>() / total;
+    let parts = weights.clone().zip(values);
+    let spread: f64 = parts.map(|(w, own)| w * (own.value - mean).powi(2)).sum();
+    let below = total - weights.map(|w| w * w).sum::<f64>() / total;
+    let excess = spread - (values.len() as f64 - 1.0);
+    if below > 0.0 {
+        (excess / below).max(0.0)
+    } else {
+        0.0
+    }
+}
+
+/// One over the variance with that between values. A value that claims to be exact is not.
+fn weight(own: &Uncertain, between: f64) -> f64 {
+    let sd = own.sd.max(own.value.abs() * f64::EPSILON);
+    1.0 / (sd.powi(2) + between)
+}
+
 /// Standard deviation of the largest of samples that lie on a parabola but for white noise.
 ///
 /// The noise moves the largest sample less than a sample, since several compete for it:
@@ -114,5 +154,21 @@ mod tests {
         // Samples far below do not compete.
         assert!((sd_of_largest(&[3.0, -30.0, -30.0], 0.5) / 0.5 - 1.0).abs() < 1e-9);
         assert_eq!(sd_of_largest(&[1.0], 0.0), 0.0);
+    }
+
+    #[test]
+    fn closed_form_means_of_equal_weights() {
+        // Far apart: the plain mean, with the standard error of the mean.
+        let values = [100.0, 102.0, 104.0].map(|value| Uncertain::new(value, 0.01));
+        let mean = mean_of_differing(&values).unwrap();
+        assert!((mean.value - 102.0).abs() < 1e-9);
+        assert!((mean.sd - 2.0 / 3.0_f64.sqrt()).abs() < 1e-4);
+        // Equal: the weighted mean with the uncertainties alone.
+        let values = [Uncertain::new(5.0, 3.0), Uncertain::new(5.0, 4.0)];
+        let mean = mean_of_differing(&values).unwrap();
+        assert!((mean.sd - 2.4).abs() < 1e-12 && mean.value == 5.0);
+        let one = mean_of_differing(&values[..1]).unwrap();
+        assert!((one.value - 5.0).abs() < 1e-14 && (one.sd - 3.0).abs() < 1e-14);
+        assert_eq!(mean_of_differing(&[]), None);
     }
 }

@@ -8,7 +8,7 @@ use windfall_files::named::Named;
 use windfall_files::text::number::value_and_sd;
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_identify::rig::kind::Rig;
-use windfall_signal::uncertain::{Uncertain, weighted_mean};
+use windfall_signal::uncertain::{Uncertain, variance_between, weighted_mean};
 
 /// Reasons that leave an impact out and are what is asked here.
 const ASKED: [&str; 2] = ["impulse-contradicts-momentum", "late-channel"];
@@ -105,8 +105,16 @@ fn averaged(mut values: Vec<Uncertain>) -> Option<PooledOutcome> {
     let plain: Vec<f64> = values.iter().map(|own| own.value).collect();
     let (median, spread) = robust_spread(&plain)?;
     values.retain(|own| (own.value - median).abs() <= OWN_FAULT * spread.hypot(own.sd));
+    // Deviations that are too small must not choose the impacts that count: of an encoder whose
+    // counts keep step with the samples they are smallest where its shift is largest.
+    let own: Vec<f64> = values.iter().map(|own| own.sd).collect();
+    let between = variance_between(&values).sqrt();
+    for value in &mut values {
+        value.sd = value.sd.hypot(between);
+    }
     let mean = weighted_mean(&values).filter(|_| values.len() >= FEWEST)?;
-    let apart = values.iter().map(|own| (own.value - mean.value) / own.sd);
+    let apart = values.iter().zip(&own);
+    let apart = apart.map(|(value, sd)| (value.value - mean.value) / sd);
     // The scatter at the weights that were given: they may be wrong, as where noise is coloured,
     // and a few impacts then decide the mean.
     let total: f64 = values.iter().map(|own| own.sd.powi(-2)).sum();

@@ -1,9 +1,9 @@
 //! Least squares of a relaxing force, with the covariance of its parameters.
 
-use crate::fit::CompressionEstimate;
-use windfall_identify::compare::correlated_scores::{
+use crate::correlated_scores::{
     add_product, add_scores, at_least, correlation_lag, inverse_of_free, sandwich, student,
 };
+use crate::fit::CompressionEstimate;
 use windfall_numerics::least_squares::{LeastSquares, NormalEquations, Options};
 use windfall_signal::noise::colour::persistence;
 

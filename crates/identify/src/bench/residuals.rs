@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::fit::plan::{Plan, plan};
 use crate::fit::problem::{FitOptions, LawProblem};
-use crate::fit::response::{Curve, Motion, Shift};
+use crate::fit::response::{Curve, Motion, Shift, clock};
 use crate::fit::solve::Solution;
 use crate::fit::uncertainty::{inflation, standardised};
 use crate::rig::kind::Rig;
@@ -69,7 +69,7 @@ fn of_solution(plan: &Plan, solution: &Solution, rig: &Rig) -> Result<BenchResid
     };
     let finest = Response {
         sensor: Some(Swing {
-            frequency: FINEST,
+            frequency: FINEST.min(0.1 / clock(&plan.noise.groups).0),
             damping: 0.1,
         }),
         ..Response::default()

@@ -4,7 +4,6 @@
 //! their likelihoods can be compared; then each law predicts the impacts of a
 //! held-out velocity.
 
-use crate::compare::correlated_scores::student;
 use crate::compare::prediction::{Example, prediction_error};
 use crate::error::Error;
 use crate::fit::problem::{FitOptions, LawProblem};
@@ -13,6 +12,7 @@ use crate::rig::kind::Rig;
 use windfall_contact::laws::kind::LawKind;
 use windfall_signal::impact::Impact;
 use windfall_signal::noise::gaussian::{noise_source, uniform};
+use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Resampled campaigns behind the share of first places.
 const RESAMPLED: usize = 2000;
@@ -277,7 +277,7 @@ fn interval(own: &[f64], best: &[f64]) -> Option<(f64, f64)> {
     let mean = differences.iter().sum::<f64>() / n;
     let squares = differences.iter().map(|d| (d - mean) * (d - mean));
     let sd = (squares.sum::<f64>() / (n - 1.0)).sqrt();
-    let reach = student(n - 1.0) * sd * n.sqrt();
+    let reach = t_upper_quantile(0.025, n - 1.0) * sd * n.sqrt();
     Some((n * mean - reach, n * mean + reach))
 }
 

@@ -233,7 +233,7 @@ fn value_at(curve: &[f64], place: f64) -> f64 {
 }
 
 /// Shortest time between samples and the last time; s.
-fn clock(groups: &[SampleGroup]) -> (f64, f64) {
+pub(crate) fn clock(groups: &[SampleGroup]) -> (f64, f64) {
     let intervals = groups.iter().map(SampleGroup::interval);
     let shortest = intervals.filter(|own| *own > 0.0).fold(1.0, f64::min);
     let ends = groups.iter().filter_map(|group| group.times().last());

@@ -46,44 +46,6 @@ pub fn acoustic_stiffness_with_density(stiffness: Uncertain, density: Uncertain)
     )
 }
 
-/// Mean of values that differ by more than their uncertainties, as taps do:
-/// each is weighted by its own variance and that between them.
-///
-/// The uncertainty is that of the mean: between values it is estimated from
-/// their spread, and a single value keeps its own. `None` without values.
-///
-/// # Source
-/// DerSimonian and Laird (1986), Control. Clin. Trials 7:177.
-pub fn mean_of_differing(values: &[Uncertain]) -> Option<Uncertain> {
-    // A fit that claims to be exact is not.
-    let variances: Vec<f64> = values
-        .iter()
-        .map(|v| v.sd.max(v.value.abs() * f64::EPSILON).powi(2))
-        .collect();
-    let weighted = |between: f64| {
-        let weights = variances.iter().map(|v| 1.0 / (v + between));
-        let sum: f64 = weights.clone().sum();
-        let mean = weights.zip(values).map(|(w, v)| w * v.value).sum::<f64>() / sum;
-        (mean, sum)
-    };
-    if values.is_empty() {
-        return None;
-    }
-    let (mean, sum) = weighted(0.0);
-    let spread = values.iter().zip(&variances);
-    let spread: f64 = spread.map(|(v, var)| (v.value - mean).powi(2) / var).sum();
-    let squares: f64 = variances.iter().map(|v| v.powi(-2)).sum();
-    let below = sum - squares / sum;
-    let excess = spread - (values.len() as f64 - 1.0);
-    let between = if below > 0.0 {
-        (excess / below).max(0.0)
-    } else {
-        0.0
-    };
-    let (value, sum) = weighted(between);
-    Some(Uncertain::new(value, sum.sqrt().recip()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,21 +75,5 @@ mod tests {
         let by_m = (at(800.0, 0.200_01) - at(800.0, 0.199_99)) / 0.000_02 * 0.001;
         let sd = acoustic_stiffness(f, m).sd;
         assert!((sd / by_f.hypot(by_m) - 1.0).abs() < 1e-6 && by_m > 0.0);
-    }
-
-    #[test]
-    fn closed_form_means_of_equal_weights() {
-        // Far apart: the plain mean, with the standard error of the mean.
-        let values = [100.0, 102.0, 104.0].map(|value| Uncertain::new(value, 0.01));
-        let mean = mean_of_differing(&values).unwrap();
-        assert!((mean.value - 102.0).abs() < 1e-9);
-        assert!((mean.sd - 2.0 / 3.0_f64.sqrt()).abs() < 1e-4);
-        // Equal: the weighted mean with the uncertainties alone.
-        let values = [Uncertain::new(5.0, 3.0), Uncertain::new(5.0, 4.0)];
-        let mean = mean_of_differing(&values).unwrap();
-        assert!((mean.sd - 2.4).abs() < 1e-12 && mean.value == 5.0);
-        let one = mean_of_differing(&values[..1]).unwrap();
-        assert!((one.value - 5.0).abs() < 1e-14 && (one.sd - 3.0).abs() < 1e-14);
-        assert_eq!(mean_of_differing(&[]), None);
     }
 }

@@ -1,9 +1,8 @@
 //! Which of the resonances in the taps of one fruit is its first spheroidal
 //! mode, 0S2.
 
-use crate::tap::acoustic_stiffness::mean_of_differing;
 use crate::tap::resonance::Resonance;
-use crate::uncertain::Uncertain;
+use crate::uncertain::{Uncertain, mean_of_differing};
 
 /// Rules by which the first spheroidal mode is accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use windfall_statistics::distribution::tail::t_upper_quantile;
 const CONFIDENCE: f64 = 0.95;
 
 /// Adds a weighted outer product.
-pub fn add_product<const N: usize>(
+pub(crate) fn add_product<const N: usize>(
     sum: &mut [[f64; N]; N],
     first: &[f64; N],
     second: &[f64; N],
@@ -22,7 +22,11 @@ pub fn add_product<const N: usize>(
 }
 
 /// Newey and West's sum over lags, made symmetric.
-pub fn add_scores<const N: usize>(meat: &mut [[f64; N]; N], scores: &[[f64; N]], lag: usize) {
+pub(crate) fn add_scores<const N: usize>(
+    meat: &mut [[f64; N]; N],
+    scores: &[[f64; N]],
+    lag: usize,
+) {
     for (i, score) in scores.iter().enumerate() {
         add_product(meat, score, score, 1.0);
         for behind in 1..=lag.min(i) {
@@ -35,7 +39,7 @@ pub fn add_scores<const N: usize>(meat: &mut [[f64; N]; N], scores: &[[f64; N]],
 
 /// Lags up to which the residuals are correlated: twice the first at which the
 /// autocorrelation is below a tenth.
-pub fn correlation_lag(residuals: &[f64]) -> usize {
+pub(crate) fn correlation_lag(residuals: &[f64]) -> usize {
     let n = residuals.len();
     let variance: f64 = residuals.iter().map(|r| r * r).sum();
     let most = n / 4;
@@ -51,7 +55,7 @@ pub(crate) type Square = [[f64; LARGEST_PARAMETERS]; LARGEST_PARAMETERS];
 
 /// A covariance with variances not below those given: in a short curve the
 /// sum over lags is itself uncertain, and more often too small.
-pub fn at_least<const N: usize>(
+pub(crate) fn at_least<const N: usize>(
     mut covariance: [[f64; N]; N],
     variance: impl Fn(usize) -> f64,
 ) -> [[f64; N]; N] {
@@ -68,7 +72,7 @@ pub fn at_least<const N: usize>(
 }
 
 /// bread⁻¹ over the free parameters; `None` when singular.
-pub fn inverse_of_free<const N: usize>(
+pub(crate) fn inverse_of_free<const N: usize>(
     bread: &[[f64; N]; N],
     free: &[usize],
 ) -> Option<[[f64; N]; N]> {
@@ -86,7 +90,7 @@ pub fn inverse_of_free<const N: usize>(
 }
 
 /// bread⁻¹ meat bread⁻¹ over the free parameters; `None` when singular.
-pub fn sandwich<const N: usize>(
+pub(crate) fn sandwich<const N: usize>(
     bread: &[[f64; N]; N],
     meat: &[[f64; N]; N],
     free: &[usize],
@@ -107,7 +111,7 @@ pub fn sandwich<const N: usize>(
 }
 
 /// vᵀ M v.
-pub fn quadratic(matrix: &Square, vector: &[f64; LARGEST_PARAMETERS]) -> f64 {
+pub(crate) fn quadratic(matrix: &Square, vector: &[f64; LARGEST_PARAMETERS]) -> f64 {
     let mut sum = 0.0;
     for i in 0..LARGEST_PARAMETERS {
         for j in 0..LARGEST_PARAMETERS {
@@ -118,6 +122,6 @@ pub fn quadratic(matrix: &Square, vector: &[f64; LARGEST_PARAMETERS]) -> f64 {
 }
 
 /// Two-sided quantile of Student's distribution.
-pub fn student(freedom: f64) -> f64 {
+pub(crate) fn student(freedom: f64) -> f64 {
     t_upper_quantile(0.5 * (1.0 - CONFIDENCE), freedom.max(1.0))
 }
