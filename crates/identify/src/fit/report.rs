@@ -7,6 +7,7 @@ use crate::fit::free::nuisance_name;
 use crate::fit::identifiability::{directions, in_words, trade};
 use crate::fit::interval::{IntervalDetail, IntervalMethod, independent_draws, mixes};
 use crate::fit::plan::{Plan, sample_count};
+use crate::fit::posterior::mixing;
 use crate::fit::solve::Solution;
 use crate::fit::types::{Estimate, Fit, PHASES, QuantityFit};
 use crate::fit::uncertainty::{runs_test, standardised};
@@ -145,6 +146,11 @@ impl Plan<'_> {
         values
             .iter_mut()
             .for_each(|value| *value += self.impact.onset);
+        if let IntervalDetail::Posterior(found) = &mut detail {
+            // Rounding makes and parts ties between draws: R-hat is that of the draws told.
+            let each = found.draws[onset].len() / found.chains.max(1);
+            found.mixing[onset] = mixing(&found.draws[onset], each);
+        }
         detail
     }
 

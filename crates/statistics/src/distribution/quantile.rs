@@ -1,14 +1,8 @@
 //! Medians and quartiles.
 
-/// The median, of an even number the mean of the two in the middle: both are equally far from
-/// it. NaN where there are no values.
+/// The median; NaN where there are no values.
 pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let Some(last) = sorted.len().checked_sub(1) else {
-        return f64::NAN;
-    };
-    0.5 * (sorted[last / 2] + sorted[last - last / 2])
+    quantile(values, 0.5)
 }
 
 /// The quantile at a probability, linear between the ordered values: place
