@@ -25,7 +25,6 @@ FINE = 10
 DAMPED = np.sqrt(0.5)
 
 
-
 class Rig(typing.NamedTuple):
     """What is wrong with a bench."""
 
@@ -244,7 +243,12 @@ def campaign(program, seed, index, impacts, rigs):
 
 
 def share(values):
-    return f"{100 * np.mean(values):.1f} %"
+    return f"{100 * np.mean(values):.1f}"
+
+
+def signed(value):
+    """Two decimals with their sign; none before zero."""
+    return f"{value:+.2f}".replace("-0.00", "0.00").replace("+0.00", "0.00").replace("-", "−")
 
 
 def row(name, all_of):
@@ -253,7 +257,7 @@ def row(name, all_of):
         mean = np.mean(per_campaign, axis=0)
         error = np.std(per_campaign, axis=0, ddof=1) / np.sqrt(len(per_campaign))
         held = np.concatenate([own[key][1] for own in all_of]).mean(axis=0)
-        return [f"{100 * mean[0]:+.2f} ± {100 * error[0]:.2f} %", f"{100 * held[0]:.1f}, {100 * held[1]:.1f} %"]
+        return [f"{signed(100 * mean[0])} ± {100 * error[0]:.2f}", f"{100 * held[0]:.1f}, {100 * held[1]:.1f}"]
 
     cells = [name, share([own["named"] for own in all_of])]
     cells += ["", ""] if name in LAWS else errors("plain")
@@ -261,8 +265,8 @@ def row(name, all_of):
     told = []
     for quantity in RIGS[name].truth:
         z = [own["z"][quantity] for own in all_of]
-        told.append(f"{quantity} {np.mean(z):+.2f} ± {np.std(z):.2f}, {share(np.abs(z) < 1.96)}")
-    cells.append("; ".join(told))
+        told.append(f"{quantity} {signed(np.mean(z))} ± {np.std(z):.2f}, {share(np.abs(z) < 1.96)}")
+    cells.append("<br>".join(told))
     return "| " + " | ".join(cells) + " |"
 
 
@@ -284,7 +288,7 @@ def main():
         ]
         results = [each.result() for each in made]
     print(f"{asked.campaigns} campaigns of {asked.impacts} impacts, seed {asked.seed}\n")
-    print("| bench | named | k off by | intervals that hold k, c | estimated: k off by | hold k, c | quantities: z, holds |")
+    print("| bench | named, % | k off by, % | hold k, c, % | estimated: k off by, % | hold k, c, % | quantities: z, hold, % |")
     print("|---|---|---|---|---|---|---|")
     for name in rigs:
         print(row(name, [result[name] for result in results]), flush=True)
