@@ -60,6 +60,15 @@ fn evenly_spaced(times: &[f64], interval: f64) -> bool {
     interval > 0.0 && largest <= EVEN * interval
 }
 
+/// What is not known of a displacement at the edge of a count.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeError {
+    /// How far the displacement moves between the readings around it, signed; m.
+    pub(crate) span: f64,
+    /// Variance beyond that of a place somewhere in the span; m².
+    pub(crate) beyond: f64,
+}
+
 /// Samples of one or more quantities taken at the same times.
 #[derive(Clone, Debug)]
 pub struct SampleGroup {
@@ -74,6 +83,9 @@ pub struct SampleGroup {
     /// Weight of each sample relative to that of its quantity, padded; empty
     /// where all are 1.
     pub(crate) relative: [Vec<f64>; QUANTITIES],
+    /// Errors of displacements at the edges of a count. Empty where samples are no edges, or
+    /// their noise is not yet known.
+    pub(crate) edges: Vec<EdgeError>,
     /// Correlation of the noise of successive samples of each quantity; 1.
     pub(crate) persistence: [f64; QUANTITIES],
     /// Recorded samples that each sample stands for, padded; empty where all are 1.
@@ -113,6 +125,7 @@ impl SampleGroup {
             values: values.map(|v| v.map_or_else(Vec::new, |(samples, _)| padded(samples))),
             weights: values.map(|v| v.map_or(0.0, |(_, weight)| weight)),
             relative: Default::default(),
+            edges: Vec::new(),
             shares: Vec::new(),
             remainder: [0.0; QUANTITIES],
             interval,
@@ -132,6 +145,14 @@ impl SampleGroup {
         let mut padded = weights.to_vec();
         padded.resize(self.len + PACK, 0.0);
         self.relative[quantity as usize] = padded;
+        self
+    }
+
+    /// The same samples, displacements at the edges of a count with these errors.
+    #[must_use]
+    pub(crate) fn with_edges(mut self, edges: Vec<EdgeError>) -> Self {
+        debug_assert_eq!(edges.len(), self.len);
+        self.edges = edges;
         self
     }
 

@@ -166,27 +166,32 @@ fn recovers_at_the_stated_rate_in_coloured_noise() {
     assert!(modelled.iter().all(|n| *n >= 52), "{modelled:?}");
 }
 
-/// With as many samples as here the four ways nearly agree.
+/// With as many samples as here the four ways agree on average; in single impacts the phases
+/// of an encoder's edges, which only estimate ± deviation knows, add up or cancel.
 #[test]
 fn converges_all_intervals_to_the_same() {
-    let impact = coloured(7);
-    let reference = fit(&impact, "kuwabara-kono", &FitOptions::default());
+    const IMPACTS: u64 = 12;
     for method in [
         IntervalMethod::Profile,
         IntervalMethod::Bootstrap,
         IntervalMethod::Posterior,
     ] {
-        let found = fit(&impact, "kuwabara-kono", &with(method));
-        for (one, other) in found.parameters.iter().zip(&reference.parameters) {
-            let (width, expected) = (one.high - one.low, other.high - other.low);
-            println!("{} {}: {:.3}", method.name(), one.name, width / expected);
-            // Quantiles of 400 replicates scatter by 6 %.
-            assert!(
-                (width / expected - 1.0).abs() < 0.2,
-                "{method:?} {one:?} {other:?}"
-            );
-            assert!(one.low < one.value && one.value < one.high);
+        let mut ratios = [0.0; 2];
+        for seed in 0..IMPACTS {
+            let impact = coloured(7 + seed);
+            let reference = fit(&impact, "kuwabara-kono", &FitOptions::default());
+            let found = fit(&impact, "kuwabara-kono", &with(method));
+            let pairs = found.parameters.iter().zip(&reference.parameters);
+            for (ratio, (one, other)) in ratios.iter_mut().zip(pairs) {
+                let own = (one.high - one.low) / (other.high - other.low);
+                assert!((0.3..3.0).contains(&own), "{method:?} {one:?} {other:?}");
+                assert!(one.low < one.value && one.value < one.high);
+                *ratio += own / IMPACTS as f64;
+            }
         }
+        println!("{}: {ratios:.3?}", method.name());
+        // Quantiles of 400 replicates scatter by 6 %.
+        assert!(ratios.iter().all(|r| (r - 1.0).abs() < 0.2), "{ratios:?}");
     }
 }
 

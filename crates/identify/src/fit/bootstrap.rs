@@ -193,8 +193,12 @@ fn channels<const P: usize>(
             // have left: blocks must not spread less than that.
             let square = pool.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / n as f64;
             let unit = 1.0 / square.max(f64::MIN_POSITIVE);
+            // Those of edges also know how far the errors of neighbours cancel, which draws
+            // that are independent do not.
+            let edges = quantity == Quantity::Displacement && !group.edges.is_empty();
             let scale = match group.given[quantity as usize] {
                 true => unit.sqrt(),
+                false if edges => (unit * freedom).sqrt(),
                 false => unit.max(freedom).sqrt(),
             };
             pool.iter_mut().for_each(|z| *z = (*z - mean) * scale);

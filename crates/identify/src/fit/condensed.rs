@@ -257,6 +257,7 @@ impl Condensed {
             even: false,
             weights: group.weights,
             relative: Default::default(),
+            edges: Vec::new(),
             persistence: group.persistence,
             zero_sd: group.zero_sd,
             means: group.means,

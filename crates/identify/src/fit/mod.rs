@@ -6,6 +6,7 @@ mod batch_motion;
 mod bootstrap;
 mod condensed;
 pub mod detail;
+mod edge_errors;
 pub mod estimator;
 mod free;
 pub mod identifiability;

@@ -2,9 +2,11 @@
 //! then from what a first fit leaves.
 
 use crate::finding::Finding;
+use crate::fit::edge_errors::edge_inflation;
 use crate::fit::problem::{FitOptions, NoiseModel, Weighting};
 use crate::fit::residual::Rows;
 use crate::fit::response::Shift;
+use crate::fit::solve::LARGEST_FREE;
 use crate::fit::uncertainty::{inflation, standardised};
 use crate::noise::blocks::{block_length, mean_noise, means, samples_between};
 use crate::noise::edges::{EdgeSamples, edge_samples};
@@ -225,7 +227,7 @@ impl NoisePlan {
     /// the widening by the correlation left.
     ///
     /// * `rows`: residuals of the fit
-    /// * `speeds`: the fitted model's speed at each edge; m/s
+    /// * `speeds`: the fitted model's velocity at each edge; m/s
     /// * `parameters`: number of free parameters
     pub(crate) fn recalibrated(
         &self,
@@ -237,7 +239,7 @@ impl NoisePlan {
         let mut plan = self.clone();
         plan.groups.clear();
         let freedom = rows.freedom_lost(parameters);
-        for (group, residuals) in self.groups.iter().zip(&rows.residuals) {
+        for (g, (group, residuals)) in self.groups.iter().zip(&rows.residuals).enumerate() {
             let mut group = group.clone();
             for quantity in Quantity::ALL {
                 let residuals = &residuals[quantity as usize];
@@ -258,7 +260,11 @@ impl NoisePlan {
                     }
                     let shared = edges.variances_of_lines(speeds, jitter);
                     let shared: Vec<f64> = shared.iter().map(|v| v * scale).collect();
-                    group = edge_group(edges, &shared, impact.onset);
+                    group = edge_group(edges, &shared, impact.onset)
+                        .with_edges(edges.errors(speeds, &shared));
+                    let own = (&residuals[..], &rows.jacobian[g][quantity as usize][..]);
+                    let inflation = edge_inflation::<LARGEST_FREE>(&group, own, parameters);
+                    group.weights[quantity as usize] /= inflation.max(LEAST_VARIANCE_RATIO);
                 } else if let Some(blocks) = self.coloured(impact, quantity, &group, residuals) {
                     let (own, noise, residuals) = blocks.group;
                     plan.noise[quantity as usize] = noise;

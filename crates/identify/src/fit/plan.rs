@@ -215,7 +215,7 @@ impl Plan<'_> {
         let onset = self.impact.onset + solution.onset;
         let times: Vec<f64> = edges.times.iter().map(|t| t - onset).collect();
         let motion = trajectory(&law, rig, solution.velocity, &times, self.options.end)?;
-        Ok(motion.rate.iter().map(|rate| rate.abs()).collect())
+        Ok(motion.rate)
     }
 
     pub(crate) fn solve_with_mass(

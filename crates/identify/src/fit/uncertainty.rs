@@ -1,6 +1,7 @@
 //! How sure a fit is: covariance from the residuals themselves, and a test of
 //! whether they are random.
 
+use crate::fit::edge_errors::meat_of_edges;
 use crate::fit::residual::Rows;
 use crate::noise::whitening::unit_shift;
 use crate::samples::{QUANTITIES, Quantity, SampleGroup};
@@ -13,10 +14,8 @@ const LARGEST_LAG_FRACTION: f64 = 0.25;
 const QUIET_LAGS: usize = 5;
 /// A correlation below this many times √(log₁₀ n / n) is insignificant.
 const SIGNIFICANT: f64 = 2.0;
-/// Smallest inflation of the variance. The errors of rounded samples nearly cancel
-/// while the impactor moves, but not where it turns around: cancellation is ignored,
-/// so that intervals err on the wide side (up to twofold for c, with the encoder of
-/// the 2003 study).
+/// Smallest inflation of the variance: where errors of neighbours cancel in the residuals,
+/// they need not cancel in what is estimated from them.
 const SMALLEST_INFLATION: f64 = 1.0;
 
 /// Covariance of weighted least-squares estimates whose weights need not be
@@ -32,6 +31,7 @@ const SMALLEST_INFLATION: f64 = 1.0;
 /// its weights say. s² is the mean square of a channel's residuals so
 /// standardised, λ its inflation by what correlation is left ([`inflation`]).
 ///
+/// Edges of a count have a part of their own ([`meat_of_edges`]).
 /// A channel whose noise the user gave has λ s² = 1, and so have priors, which add J Jᵀ / σ².
 ///
 /// * `equations`: N at the optimum, zeros taken out, with priors
@@ -73,6 +73,15 @@ pub fn covariance<const P: usize>(
                 false => freedom * mean_square(&z) * inflation(&z),
             };
             let jacobian = &rows.jacobian[g][q];
+            if quantity == Quantity::Displacement && !group.edges.is_empty() {
+                let own = meat_of_edges::<P>(group, (residuals, jacobian), inflation(&z));
+                for p in 0..P {
+                    for r in 0..P {
+                        meat[p][r] += freedom * own[p][r];
+                    }
+                }
+                continue;
+            }
             add_meat(&mut meat, group, quantity, jacobian, variance, offsets[q]);
         }
     }

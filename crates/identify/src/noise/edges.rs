@@ -7,6 +7,7 @@
 //!
 //! A line that lies beside its place is passed twice, on the way in and out, with one error.
 
+use crate::samples::EdgeError;
 use std::collections::HashMap;
 use windfall_signal::encoder::edge_rate::{CountTimes, edges};
 use windfall_signal::impact::Series;
@@ -23,9 +24,11 @@ const MOST_REVERSALS: f64 = 0.2;
 const SINGLE: f64 = 1.5;
 /// Share of the steps that must be single; 1.
 const MOSTLY: f64 = 0.9;
-/// Lines of an encoder are no more accurate than this part of a count: keeps
-/// the weight of a slow edge finite; 1.
-pub(crate) const LINE_ACCURACY: f64 = 0.02;
+/// Lines of an encoder are no more accurate than this part of a count: where the impactor
+/// turns around, it accelerates by about as much between two readings; 1.
+pub(crate) const LINE_ACCURACY: f64 = 0.005;
+/// Steps to the jitter, each of which divides its error by ten or so.
+const JITTER_STEPS: usize = 10;
 
 /// Displacements at the changes of a count.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,18 +117,43 @@ impl EdgeSamples {
         (variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
     }
 
+    /// What is not known of each displacement, where it has these variances in all; m².
+    ///
+    /// * `speeds`: velocity at each edge, signed; m/s
+    pub(crate) fn errors(&self, speeds: &[f64], variances: &[f64]) -> Vec<EdgeError> {
+        let moved = speeds.iter().zip(&self.intervals).zip(variances);
+        moved
+            .map(|((speed, interval), variance)| {
+                let span = speed * interval;
+                let beyond = (variance - span * span / 12.0).max(0.0);
+                EdgeError { span, beyond }
+            })
+            .collect()
+    }
+
     fn timing_variances<'a>(&'a self, speeds: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let pairs = speeds.iter().zip(&self.intervals);
         pairs.map(|(speed, interval)| (speed * interval).powi(2) / 12.0)
     }
 
-    /// Standard deviation of what the residuals have beyond the timing; m.
+    /// Standard deviation of what the residuals have beyond the timing; m. Maximum likelihood of
+    /// normal errors: slow edges, whose time hardly matters, say most.
     pub(crate) fn jitter(&self, residuals: &[f64], speeds: &[f64], parameters: usize) -> f64 {
         let count = residuals.len();
-        let seen: f64 = residuals.iter().map(|r| r * r).sum();
-        let freedom = count.saturating_sub(parameters).max(1) as f64;
-        let timed: f64 = self.timing_variances(speeds).sum();
-        (seen / freedom - timed / count as f64).max(0.0).sqrt()
+        let freedom = count as f64 / count.saturating_sub(parameters).max(1) as f64;
+        let floor = (LINE_ACCURACY * self.quantum).powi(2);
+        let timed: Vec<f64> = self.timing_variances(speeds).collect();
+        let mut jitter = floor;
+        for _ in 0..JITTER_STEPS {
+            let (mut beyond, mut total) = (0.0, 0.0);
+            for (residual, timed) in residuals.iter().zip(&timed) {
+                let weight = (timed + jitter).powi(-2);
+                beyond += weight * (freedom * residual * residual - timed);
+                total += weight;
+            }
+            jitter = (beyond / total).max(floor);
+        }
+        jitter.sqrt()
     }
 }
 
@@ -164,7 +192,7 @@ mod tests {
                 square += (speed * time - value - 0.5 * quantum).powi(2);
                 count += 1;
             }
-            let told = edges.variances(&edges.speeds, 0.0)[20] - (0.02 * quantum).powi(2);
+            let told = edges.variances(&edges.speeds, 0.0)[20] - (LINE_ACCURACY * quantum).powi(2);
             let expected = (speed * interval).powi(2) / 12.0;
             assert!((told / expected - 1.0).abs() < 0.2, "{told} {expected}");
         }
