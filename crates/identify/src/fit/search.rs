@@ -1,5 +1,5 @@
-//! The way of one fit to its minimum: first with a share of the samples or with
-//! condensed ones, then with all of them.
+//! The way of one fit to its minimum: first with a share of the samples, then with
+//! condensed ones, at last with all of them.
 
 use crate::fit::condensed::{Bends, condensed};
 use crate::fit::residual::Found;
@@ -28,7 +28,8 @@ pub const FORESIGHT: f64 = 100.0;
 enum Stage {
     /// The cost of a share of the samples, roughly integrated.
     Approach,
-    /// That of condensed samples, from where the approach ended.
+    /// That of condensed samples, from where the approach ended: to its minimum, or for
+    /// one step where the end of the fit may be foreseen.
     Close,
     /// That of all, from where the stage before ended.
     Near,
