@@ -13,6 +13,7 @@ use windfall_contact::laws::kind::Law;
 use windfall_identify::error::{Error, check_positive};
 use windfall_identify::rig::simulate::{ACCURACY, check_ascending};
 use windfall_numerics::ode::step::{StepError, Tolerance};
+use windfall_numerics::real_vector::compiled_for_vectors;
 
 /// Impacts of a drop whose motion is read; a fruit rests long before.
 const MOST_IMPACTS: usize = 100_000;
@@ -149,7 +150,7 @@ pub(crate) fn tally_drop<const W: usize>(
     event: &DropEvent<AnyLaw, LARGEST_PARAMETERS, W>,
     impacts: usize,
 ) -> Result<DropTally<W>, Error> {
-    Ok(pulp::Arch::new().dispatch(TallyPass { event, impacts })?)
+    Ok(compiled_for_vectors(TallyPass { event, impacts })?)
 }
 
 /// A drop, compiled for the processor's vector instructions.
@@ -158,11 +159,11 @@ struct TallyPass<'a, const W: usize> {
     impacts: usize,
 }
 
-impl<const W: usize> pulp::WithSimd for TallyPass<'_, W> {
+impl<const W: usize> pulp::NullaryFnOnce for TallyPass<'_, W> {
     type Output = Result<DropTally<W>, StepError>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+    fn call(self) -> Self::Output {
         let rig = rig_duals(self.event);
         let plain = self.event.values();
         let plain_rig = rig_duals(&plain);

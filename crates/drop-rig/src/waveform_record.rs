@@ -14,6 +14,7 @@ use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_identify::error::Error;
 use windfall_numerics::ode::step::StepError;
 use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::compiled_for_vectors;
 
 /// Accuracy of the integration: far below the noise of any force.
 const ACCURACY: f64 = 1e-9;
@@ -52,7 +53,7 @@ pub(crate) fn evaluate<const W: usize>(
         seeds: parameters.seeds::<W>(values, velocity, mass),
         tolerance: tolerance(ACCURACY, velocity),
     };
-    let mut equations = pulp::Arch::new().dispatch(OnePass {
+    let mut equations = compiled_for_vectors(OnePass {
         parameters,
         record,
         stage,
@@ -81,11 +82,11 @@ struct OnePass<'a, const W: usize> {
     own: &'a [f64; OWN],
 }
 
-impl<const W: usize> pulp::WithSimd for OnePass<'_, W> {
+impl<const W: usize> pulp::NullaryFnOnce for OnePass<'_, W> {
     type Output = Result<RecordEquations, StepError>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+    fn call(self) -> Self::Output {
         let (record, stage, own) = (self.record, self.stage, self.own);
         let rig = rig_duals(self.event);
         let windows = &record.windows[..stage.waveforms.min(record.windows.len())];

@@ -229,6 +229,14 @@ impl<const P: usize> Descent<P> {
         resumed
     }
 
+    /// A minimisation from where `other` stopped, of its cost but for small errors:
+    /// besides the damping, the convergence of the steps is judged on from there.
+    pub fn continued(other: &Self, bounds: &Bounds<P>, options: &Options<P>) -> Self {
+        let mut continued = Self::resumed(other, bounds, options);
+        continued.here.left = other.here.left;
+        continued
+    }
+
     /// Where the problem is to be evaluated next; `None` when the end is reached.
     pub fn propose(&self) -> Option<[f64; P]> {
         self.asked.map(|asked| match asked {
@@ -244,7 +252,7 @@ impl<const P: usize> Descent<P> {
         match (self.asked.take(), found) {
             (Some(Asked::Start), Some(equations)) => {
                 let start = point(self.here.parameters, equations, &self.bounds);
-                self.arrive(start, f64::INFINITY);
+                self.arrive(start, self.here.left);
             }
             (Some(Asked::Step { to, gain }), found) => {
                 let next = found.map(|found| point(to, found, &self.bounds));

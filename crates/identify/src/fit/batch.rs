@@ -130,7 +130,7 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
     ) -> bool {
         let estimator = &fit.problem.estimator;
         let share = fit.search.share();
-        let model = estimator.model_for(u, share.rough);
+        let model = estimator.model_for(u, &share);
         let (before, end) = span(&model, share.groups);
         let suits = self.impacts.suits(&model.event.law);
         let way = Way::new(&model.event, before, end).filter(|_| suits);

@@ -12,12 +12,12 @@ use crate::rig::impact_event::ImpactEvent;
 use crate::rig::motion::acceleration_with;
 use windfall_contact::law::SMALLEST_DISPLACEMENT;
 use windfall_numerics::ode::dense::DenseStep;
-use windfall_numerics::ode::lockstep::{
-    Beginning, Lockstep, LockstepState, LockstepSystem, attempt,
-};
+use windfall_numerics::ode::lockstep::{Beginning, Lockstep, LockstepSystem, attempt};
 use windfall_numerics::real::{Lanes, Real};
+use windfall_numerics::real_vector::{EightLanes, compiled_for_vectors, with_eight_lanes};
 
 /// Right-hand side of several impacts, each in flight or in contact.
+#[repr(align(64))]
 pub(crate) struct Impacts<L: BatchLaw<N>, const N: usize, const W: usize> {
     laws: [L; IMPACTS],
     packed: L::Packed,
@@ -87,31 +87,28 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> LockstepSystem<2, W, IMPACT
     for Impacts<L, N, W>
 {
     #[inline(always)]
-    fn derivative(
-        &self,
-        s: PerImpact,
-        [x, v]: &LockstepState<2, W, IMPACTS>,
-    ) -> LockstepState<2, W, IMPACTS> {
-        let on = self.touching;
-        let one = PerImpact::splat(1.0);
+    fn derivative<R: Real<Plain = PerImpact>>(&self, s: R, [x, v]: &[[R; W]; 2]) -> [[R; W]; 2] {
+        let on = s.with_plain(self.touching);
+        let one = s.constant(1.0);
         let stretch = match self.power {
             1 => one,
             2 => on.select(s * 2.0, one),
             _ => on.select(s * 4.0 * s * s, one),
         };
-        let d = x[0].max(PerImpact::splat(SMALLEST_DISPLACEMENT));
+        let d = x[0].max(s.constant(SMALLEST_DISPLACEMENT));
         let force = self.packed.evaluate(d, v[0]);
-        let a = acceleration_with(self.motion, [x[0], v[0], force.force * on]);
+        let motion = s.with_each_plain(self.motion);
+        let a = acceleration_with(motion, [x[0], v[0], force.force * on]);
         let by_force = a.by_force * on;
         let by_displacement = a.by_displacement + by_force * force.by_displacement;
         let by_rate = a.by_rate + by_force * force.by_rate;
-        let mut out = [[PerImpact::ZERO; W]; 2];
+        let mut out = [[s; W]; 2];
         out[0][0] = v[0] * stretch;
         out[1][0] = a.value * stretch;
         for w in 1..W {
-            let mut direct = PerImpact::ZERO;
+            let mut direct = s.constant(0.0);
             for (by, seed) in force.by_parameter.iter().zip(&self.seeds) {
-                direct += seed[w] * *by;
+                direct = direct + s.with_plain(seed[w]) * *by;
             }
             let rate = x[w] * by_displacement + v[w] * by_rate + direct * by_force;
             out[0][w] = v[w] * stretch;
@@ -127,7 +124,7 @@ pub(crate) fn attempt_all<L: BatchLaw<N>, const N: usize, const W: usize>(
     impacts: &Impacts<L, N, W>,
     lockstep: &mut Lockstep<2, W, IMPACTS>,
 ) {
-    pulp::Arch::new().dispatch(Attempt { impacts, lockstep });
+    with_eight_lanes(Attempt { impacts, lockstep });
 }
 
 /// [`attempt_all`], compiled for the machine's vector instructions.
@@ -136,12 +133,12 @@ struct Attempt<'a, L: BatchLaw<N>, const N: usize, const W: usize> {
     lockstep: &'a mut Lockstep<2, W, IMPACTS>,
 }
 
-impl<L: BatchLaw<N>, const N: usize, const W: usize> pulp::WithSimd for Attempt<'_, L, N, W> {
+impl<L: BatchLaw<N>, const N: usize, const W: usize> EightLanes for Attempt<'_, L, N, W> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        attempt(self.impacts, self.lockstep);
+    fn run<R: Real<Plain = PerImpact>>(self, zero: R) {
+        attempt(zero, self.impacts, self.lockstep);
     }
 }
 
@@ -222,8 +219,23 @@ impl Way {
 
     /// The piece of the motion that a step, which ended at `position`, is, and what
     /// follows it.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn took<L: BatchLaw<N>, const N: usize, const W: usize>(
+        &mut self,
+        event: &ImpactEvent<L, N, W>,
+        done: DenseStep<2, W>,
+        position: f64,
+    ) -> (Segment<W>, Piece, Next<W>) {
+        compiled_for_vectors(Took {
+            way: self,
+            event,
+            done,
+            position,
+        })
+    }
+
+    #[inline(always)]
+    fn take<L: BatchLaw<N>, const N: usize, const W: usize>(
         &mut self,
         event: &ImpactEvent<L, N, W>,
         done: DenseStep<2, W>,
@@ -296,6 +308,23 @@ impl Way {
         };
         let segment = Segment::without_peak(done, power, from, until);
         (segment, Piece::Contact, next)
+    }
+}
+
+/// [`Way::took`], compiled for the machine's instructions.
+struct Took<'a, L, const N: usize, const W: usize> {
+    way: &'a mut Way,
+    event: &'a ImpactEvent<L, N, W>,
+    done: DenseStep<2, W>,
+    position: f64,
+}
+
+impl<L: BatchLaw<N>, const N: usize, const W: usize> pulp::NullaryFnOnce for Took<'_, L, N, W> {
+    type Output = (Segment<W>, Piece, Next<W>);
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        self.way.take(self.event, self.done, self.position)
     }
 }
 

@@ -17,9 +17,10 @@
 //! Gautschi (2004), Orthogonal Polynomials, section 2.1.1 (discrete measures), and
 //! theorem 1.45 (Gauss quadrature).
 
-use crate::fit::residual_pack::{Pack, load};
+use crate::fit::residual_pack::Pack;
 use crate::samples::{PACK, QUANTITIES, SampleGroup};
 use std::sync::LazyLock;
+use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, with_four_lanes};
 
 /// Samples that take the place of a block.
@@ -61,8 +62,8 @@ struct Block {
     /// Places of the nodes; samples from the block's first.
     nodes: [f64; NODES],
     weights: [f64; NODES],
-    /// Value of the least-squares polynomial at each node, by sample.
-    values: [Vec<f64>; NODES],
+    /// Value of the least-squares polynomial at each node, by the samples of each pack.
+    values: Vec<[Pack; NODES]>,
 }
 
 static BLOCKS: LazyLock<[Block; LENGTHS.len()]> = LazyLock::new(|| LENGTHS.map(Block::new));
@@ -87,19 +88,21 @@ impl Block {
             let p = polynomials(u, &steps);
             1.0 / (0..NODES).map(|k| p[k] * p[k] / squares[k]).sum::<f64>()
         };
-        let values = nodes.map(|u| {
-            let at = polynomials(u, &steps);
-            let kernel = |i: usize| {
-                let p = polynomials(place(i), &steps);
-                (0..NODES).map(|k| at[k] * p[k] / squares[k]).sum()
-            };
-            (0..length).map(kernel).collect()
-        });
+        let at_nodes = nodes.map(|u| polynomials(u, &steps));
+        let kernel = |j: usize, i: usize| -> f64 {
+            let p = polynomials(place(i), &steps);
+            let part = |k: usize| at_nodes[j][k] * p[k] / squares[k];
+            (0..NODES).map(part).sum()
+        };
+        let pack = |first: usize| {
+            let of_node = |j: usize| Lanes(std::array::from_fn(|lane| kernel(j, first + lane)));
+            std::array::from_fn(of_node)
+        };
         Self {
             length,
             nodes: nodes.map(|u| 0.5 * ((u + 1.0) * m - 1.0)),
             weights: nodes.map(weight),
-            values,
+            values: (0..length).step_by(PACK).map(pack).collect(),
         }
     }
 }
@@ -282,16 +285,14 @@ impl FourLanes for Project<'_> {
         let zero = zero.constant(0.0);
         let mut sums = [zero; NODES];
         let mut square = zero;
-        let mut at = 0;
-        while at < self.block.length {
-            let pack: Pack = load(self.samples, at);
-            let y = zero.with_plain(pack);
+        let packs = self.samples.as_chunks::<PACK>().0;
+        for (pack, values) in packs.iter().zip(&self.block.values) {
+            let y = zero.with_plain(Lanes(*pack));
             square = y.mul_add(y, square);
             for j in 0..NODES {
-                let by = zero.with_plain(load(&self.block.values[j], at));
+                let by = zero.with_plain(values[j]);
                 sums[j] = by.mul_add(y, sums[j]);
             }
-            at += PACK;
         }
         (sums.map(|sum| sum.plain().sum()), square.plain().sum())
     }

@@ -20,8 +20,6 @@ use windfall_numerics::real::Lanes;
 /// Samples that show the way to the minimum, and the largest stride among them.
 const APPROACH_SAMPLES: usize = 64;
 const LARGEST_STRIDE: usize = 16;
-/// How much coarser the integration may be on the way.
-const APPROACH_LOOSENESS: f64 = 1e4;
 
 /// Something that a fit can estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -361,7 +359,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         Samples {
             groups: self.groups,
             stride,
-            touch: (smooth && stride.is_none()).then(|| self.values(start).onset),
+            touch: smooth.then(|| self.values(start).onset),
         }
     }
 
@@ -371,17 +369,15 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
 
     /// The model at coordinates `u`, integrated as its share of samples deserves.
     #[inline(always)]
-    pub(crate) fn model_for(&self, u: &[f64; P], rough: bool) -> Model<L, N, W, P> {
+    pub(crate) fn model_for(&self, u: &[f64; P], share: &Share) -> Model<L, N, W, P> {
         let mut model = self.model(u);
-        if rough {
-            model.event.tolerance = self.setting.tolerance.loosened(APPROACH_LOOSENESS);
-        }
+        model.event.tolerance = self.setting.tolerance.loosened(share.looseness);
         model
     }
 
     /// Normal equations at coordinates `u` of a share of the samples.
     pub(crate) fn evaluate_share(&self, u: &[f64; P], share: &Share) -> Option<Found<P>> {
-        let model = self.model_for(u, share.rough);
+        let model = self.model_for(u, share);
         let mut found = evaluate_some(&model, share.groups, share.stride).ok()?;
         self.add_priors(u, share.stride, &mut found.equations);
         Some(found)

@@ -13,7 +13,7 @@ use windfall_contact::law::ContactLaw;
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_numerics::ode::step::StepError;
 use windfall_numerics::real::{Lanes, Real};
-use windfall_numerics::real_vector::{FourLanes, with_four_lanes};
+use windfall_numerics::real_vector::{FourLanes, compiled_for_vectors, with_four_lanes};
 
 /// Residuals and derivatives of every sample, unweighted, for diagnostics.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +80,7 @@ fn pass<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     rows: Option<&mut Rows>,
     stride: usize,
 ) -> Result<Found<P>, StepError> {
-    pulp::Arch::new().dispatch(Pass {
+    compiled_for_vectors(Pass {
         model,
         groups,
         rows,
@@ -96,13 +96,13 @@ struct Pass<'a, L, const N: usize, const W: usize, const P: usize> {
     stride: usize,
 }
 
-impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::WithSimd
+impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> pulp::NullaryFnOnce
     for Pass<'_, L, N, W, P>
 {
     type Output = Result<Found<P>, StepError>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+    fn call(self) -> Self::Output {
         let Self {
             model,
             groups,

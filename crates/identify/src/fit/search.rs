@@ -1,5 +1,5 @@
-//! The way of one fit to its minimum: first with a share of the samples or with
-//! condensed ones, then with all of them.
+//! The way of one fit to its minimum: first with a share of the samples, then with
+//! condensed ones, at last with all of them.
 
 use crate::fit::condensed::{Bends, condensed};
 use crate::fit::residual::Found;
@@ -9,6 +9,14 @@ use windfall_numerics::least_squares::{Bounds, Descent, Minimum, Options, Stop};
 /// The way ends when the next step gains less than this fraction of the cost: by
 /// then all samples pull harder.
 const APPROACH_GAIN: f64 = 2e-2;
+/// One step with condensed samples leads close enough when it gains less than this
+/// fraction of the cost.
+const CLOSE_GAIN: f64 = 0.2;
+
+/// How much coarser the integration may be on the way.
+const APPROACH_LOOSENESS: f64 = 1e4;
+/// And in the step that ends close to the minimum: as condensed samples are.
+const CLOSE_LOOSENESS: f64 = 1e2;
 
 /// What the foreseen end of a fit may leave to gain, in units of the tolerated
 /// gain, if its steps did not converge faster than the last one; they do, nearly
@@ -20,7 +28,8 @@ pub const FORESIGHT: f64 = 100.0;
 enum Stage {
     /// The cost of a share of the samples, roughly integrated.
     Approach,
-    /// That of condensed samples, from where the approach ended.
+    /// That of condensed samples, from where the approach ended: to its minimum, or for
+    /// one step where the end of the fit may be foreseen.
     Close,
     /// That of all, from where the stage before ended.
     Near,
@@ -47,8 +56,8 @@ pub(crate) struct Share<'s> {
     pub groups: &'s [SampleGroup],
     /// Of how many packs one counts.
     pub stride: usize,
-    /// Whether a rough integration will do.
-    pub rough: bool,
+    /// How much coarser than asked for the integration may be.
+    pub looseness: f64,
 }
 
 impl<'s> Share<'s> {
@@ -57,7 +66,7 @@ impl<'s> Share<'s> {
         Self {
             groups,
             stride: 1,
-            rough: false,
+            looseness: 1.0,
         }
     }
 }
@@ -92,13 +101,7 @@ impl<'a, const P: usize> Search<'a, P> {
         };
         let first = seen(options);
         let (stage, first) = match samples.stride.is_some() || condensed.is_some() {
-            true => {
-                let coarse = Options {
-                    cost_tolerance: options.cost_tolerance.max(APPROACH_GAIN),
-                    ..first
-                };
-                (Stage::Approach, coarse)
-            }
+            true => (Stage::Approach, coarse(&first, APPROACH_GAIN)),
             false => (Stage::Alone, first),
         };
         let mut search = Self {
@@ -131,7 +134,11 @@ impl<'a, const P: usize> Search<'a, P> {
         match self.stage {
             Stage::Approach => Share {
                 stride: self.samples.stride.unwrap_or(1),
-                rough: true,
+                looseness: APPROACH_LOOSENESS,
+                ..few
+            },
+            Stage::Close if self.options.foresight > 0.0 => Share {
+                looseness: CLOSE_LOOSENESS,
                 ..few
             },
             Stage::Close => few,
@@ -175,17 +182,27 @@ impl<'a, const P: usize> Search<'a, P> {
                 self.descent = Descent::new(&self.start, &self.bounds, &seen(&self.options));
                 continue;
             }
-            self.stage = match self.stage {
+            let over = self.stage;
+            self.stage = match over {
                 Stage::Approach => self.come_close(),
                 Stage::Close => Stage::Near,
                 Stage::Near | Stage::Alone => return,
             };
             self.spent += found.evaluations;
+            let foreseen = self.options.foresight > 0.0;
+            let options = match self.stage {
+                // One step, by which the first of all samples is judged.
+                Stage::Close if foreseen => coarse(&self.options, CLOSE_GAIN),
+                _ => self.options,
+            };
             // The first damped step would hide how well the steps converge, which a
             // foreseen end is judged by.
-            self.descent = match self.options.foresight > 0.0 || self.stage == Stage::Close {
-                true => Descent::resumed(&self.descent, &self.bounds, &self.options),
-                false => Descent::new(&found.parameters, &self.bounds, &self.options),
+            self.descent = match over {
+                Stage::Close => Descent::continued(&self.descent, &self.bounds, &options),
+                _ if foreseen || self.stage == Stage::Close => {
+                    Descent::resumed(&self.descent, &self.bounds, &options)
+                }
+                _ => Descent::new(&found.parameters, &self.bounds, &options),
             };
         }
     }
@@ -200,6 +217,15 @@ impl<'a, const P: usize> Search<'a, P> {
             Some(_) => Stage::Close,
             None => Stage::Near,
         }
+    }
+}
+
+/// The options of a stage that only leads to the next: it ends when the next step gains
+/// less than `gain`.
+fn coarse<const P: usize>(options: &Options<P>, gain: f64) -> Options<P> {
+    Options {
+        cost_tolerance: options.cost_tolerance.max(gain),
+        ..*options
     }
 }
 

@@ -13,6 +13,7 @@ use windfall_contact::law::ContactLaw;
 use windfall_numerics::ode::dense::DenseStep;
 use windfall_numerics::ode::step::{Position, Step, StepError, System, Tolerance, step};
 use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::compiled_for_vectors;
 
 /// Steps before an integration is given up: an impact takes about ten.
 pub(crate) const LARGEST_STEPS: usize = 20_000;
@@ -176,7 +177,7 @@ fn flight_step<const W: usize>(
     limit: f64,
     tolerance: &Tolerance<2>,
 ) -> Result<Step<2, W>, StepError> {
-    pulp::Arch::new().dispatch(FlightStep {
+    compiled_for_vectors(FlightStep {
         flight,
         position,
         limit,
@@ -192,11 +193,11 @@ struct FlightStep<'a, const W: usize> {
     tolerance: &'a Tolerance<2>,
 }
 
-impl<const W: usize> pulp::WithSimd for FlightStep<'_, W> {
+impl<const W: usize> pulp::NullaryFnOnce for FlightStep<'_, W> {
     type Output = Result<Step<2, W>, StepError>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+    fn call(self) -> Self::Output {
         step(self.flight, self.position, self.limit, self.tolerance)
     }
 }

@@ -20,7 +20,7 @@ pub type LockstepState<const D: usize, const W: usize, const B: usize> = [[Lanes
 /// columns.
 pub trait LockstepSystem<const D: usize, const W: usize, const B: usize> {
     /// y' of each lane at its `s` and state.
-    fn derivative(&self, s: Lanes<B>, state: &LockstepState<D, W, B>) -> LockstepState<D, W, B>;
+    fn derivative<R: Real<Plain = Lanes<B>>>(&self, s: R, state: &[[R; W]; D]) -> [[R; W]; D];
 }
 
 /// What became of a lane in one attempt.
@@ -53,6 +53,7 @@ pub struct Beginning<const D: usize, const W: usize> {
 
 /// `B` integrations, and the steps that they made last.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub struct Lockstep<const D: usize, const W: usize, const B: usize> {
     s: Lanes<B>,
     width: Lanes<B>,
@@ -171,24 +172,22 @@ impl<const D: usize, const W: usize, const B: usize> Lockstep<D, W, B> {
     }
 }
 
-/// Tries one step in every lane.
+/// Tries one step in every lane, with numbers like `zero`.
 ///
 /// # Numerics
 /// As [`step`](crate::ode::step::step), whose control of the step each lane has for
 /// itself. The stages of the dense output are left out when no lane's step is
 /// accepted. Nothing is allocated.
 #[inline(always)]
-pub fn attempt<const D: usize, const W: usize, const B: usize>(
+pub fn attempt<R: Real<Plain = Lanes<B>>, const D: usize, const W: usize, const B: usize>(
+    zero: R,
     system: &impl LockstepSystem<D, W, B>,
     all: &mut Lockstep<D, W, B>,
 ) {
     if all.fresh.0.iter().any(|fresh| *fresh > 0.0) {
-        let derivative = system.derivative(all.s, &all.state);
-        for d in 0..D {
-            for w in 0..W {
-                all.derivative[d][w] = all.fresh.select(derivative[d][w], all.derivative[d][w]);
-            }
-        }
+        let state = with_plain(zero, &all.state);
+        let derivative = system.derivative(zero.with_plain(all.s), &state);
+        choose(zero, all.fresh, &derivative, &mut all.derivative);
         all.fresh = Lanes::ZERO;
     }
     let mut last = [false; B];
@@ -210,10 +209,11 @@ pub fn attempt<const D: usize, const W: usize, const B: usize>(
     all.done = all.width;
     all.from = all.state;
     all.k[0] = all.derivative;
-    all.to = stages(system, all, 1..=STAGES);
-    let error = error_norm(all);
+    let to = stages(zero, system, all, 1..=STAGES);
+    let error = error_norm(&to, all);
     // The error's eighth root.
-    let factor = Lanes::splat(StepControl::SAFETY) / error.sqrt().sqrt().sqrt();
+    let factor = zero.constant(StepControl::SAFETY) / error.sqrt().sqrt().sqrt();
+    let (error, factor) = (error.plain(), factor.plain());
     let mut accepted = Lanes::<B>::ZERO;
     for lane in 0..B {
         if matches!(all.outcome[lane], Outcome::Idle | Outcome::Failed) {
@@ -233,28 +233,56 @@ pub fn attempt<const D: usize, const W: usize, const B: usize>(
         }
     }
     if accepted.0.iter().any(|a| *a > 0.0) {
-        dense_terms(system, all);
-        for d in 0..D {
-            for w in 0..W {
-                all.state[d][w] = accepted.select(all.to[d][w], all.state[d][w]);
-                all.derivative[d][w] = accepted.select(all.k[STAGES][d][w], all.derivative[d][w]);
-            }
+        dense_terms(system, &to, all);
+        let derivative = with_plain(zero, &all.k[STAGES]);
+        choose(zero, accepted, &to, &mut all.state);
+        choose(zero, accepted, &derivative, &mut all.derivative);
+    }
+}
+
+/// A state as numbers like `zero`.
+#[inline(always)]
+fn with_plain<R: Real, const D: usize, const W: usize>(
+    zero: R,
+    state: &[[R::Plain; W]; D],
+) -> [[R; W]; D] {
+    let mut out = [[zero; W]; D];
+    for d in 0..D {
+        out[d] = zero.with_each_plain(state[d]);
+    }
+    out
+}
+
+/// Puts `found` in the place of `state` in the lanes that are 1 in `chosen`.
+#[inline(always)]
+fn choose<R: Real, const D: usize, const W: usize>(
+    zero: R,
+    chosen: R::Plain,
+    found: &[[R; W]; D],
+    state: &mut [[R::Plain; W]; D],
+) {
+    let chosen = zero.with_plain(chosen);
+    for d in 0..D {
+        for w in 0..W {
+            let other = zero.with_plain(state[d][w]);
+            state[d][w] = chosen.select(found[d][w], other).plain();
         }
     }
 }
 
 /// Σ a_j k_j for one row of the tableau.
 #[inline(always)]
-fn combine<const D: usize, const W: usize, const B: usize>(
+fn combine<R: Real, const D: usize, const W: usize>(
+    zero: R,
     row: Row,
-    k: &[LockstepState<D, W, B>; STAGES_WITH_DENSE],
-) -> LockstepState<D, W, B> {
-    let mut out = [[Lanes::ZERO; W]; D];
+    k: &[[[R::Plain; W]; D]; STAGES_WITH_DENSE],
+) -> [[R; W]; D] {
+    let mut out = [[zero.constant(0.0); W]; D];
     for &(j, a) in row {
-        let (a, k) = (Lanes::splat(a), &k[j]);
+        let (a, k) = (zero.constant(a), &k[j]);
         for d in 0..D {
             for w in 0..W {
-                out[d][w] = k[d][w].mul_add(a, out[d][w]);
+                out[d][w] = zero.with_plain(k[d][w]).mul_add(a, out[d][w]);
             }
         }
     }
@@ -263,79 +291,94 @@ fn combine<const D: usize, const W: usize, const B: usize>(
 
 /// The states of some stages and their derivatives; the state of the last one.
 #[inline(always)]
-fn stages<const D: usize, const W: usize, const B: usize>(
+fn stages<R: Real<Plain = Lanes<B>>, const D: usize, const W: usize, const B: usize>(
+    zero: R,
     system: &impl LockstepSystem<D, W, B>,
     all: &mut Lockstep<D, W, B>,
     range: std::ops::RangeInclusive<usize>,
-) -> LockstepState<D, W, B> {
-    let mut state = all.from;
+) -> [[R; W]; D] {
+    let [start, width] = zero.with_each_plain([all.start, all.done]);
+    let from = with_plain(zero, &all.from);
+    let mut state = from;
     for i in range {
-        let sum = combine(A[i], &all.k);
+        let sum = combine(zero, A[i], &all.k);
         for d in 0..D {
             for w in 0..W {
-                state[d][w] = sum[d][w].mul_add(all.done, all.from[d][w]);
+                state[d][w] = sum[d][w].mul_add(width, from[d][w]);
             }
         }
-        all.k[i] = system.derivative(all.start + all.done * C[i], &state);
+        let derivative = system.derivative(start + width * C[i], &state);
+        for d in 0..D {
+            all.k[i][d] = zero.each_plain(derivative[d]);
+        }
     }
     state
 }
 
 /// Error of each lane's step against its tolerance: accepted at 1 or below.
 #[inline(always)]
-fn error_norm<const D: usize, const W: usize, const B: usize>(all: &Lockstep<D, W, B>) -> Lanes<B> {
-    let fifth = combine(E5, &all.k);
-    let third = combine(E3, &all.k);
-    let width = all.done.max(-all.done);
-    let mut largest = Lanes::splat(0.0);
-    let mut poison = Lanes::splat(0.0);
+fn error_norm<R: Real<Plain = Lanes<B>>, const D: usize, const W: usize, const B: usize>(
+    to: &[[R; W]; D],
+    all: &Lockstep<D, W, B>,
+) -> R {
+    let zero = to[0][0].constant(0.0);
+    let fifth = combine(zero, E5, &all.k);
+    let third = combine(zero, E3, &all.k);
+    let [width, relative] = zero.with_each_plain([all.done, all.relative]);
+    let width = width.max(-width);
+    let mut largest = zero;
+    let mut poison = zero;
     for w in 0..W {
         let looseness = if w == 0 {
             1.0
         } else {
             StepControl::SENSITIVITY
         };
-        let (mut sum5, mut sum3) = (Lanes::<B>::ZERO, Lanes::<B>::ZERO);
+        let (mut sum5, mut sum3) = (zero, zero);
         for d in 0..D {
-            let (from, to) = (all.from[d][w], all.to[d][w]);
+            let (from, to) = (zero.with_plain(all.from[d][w]), to[d][w]);
             let size = from.max(-from).max(to.max(-to));
-            let scale = (size * all.relative + all.absolute[d]) * looseness;
+            let scale = (size * relative + zero.with_plain(all.absolute[d])) * looseness;
             let (e5, e3) = (fifth[d][w] / scale, third[d][w] / scale);
-            sum5 += e5 * e5;
-            sum3 += e3 * e3;
+            sum5 = sum5 + e5 * e5;
+            sum3 = sum3 + e3 * e3;
         }
         let denominator = ((sum5 + sum3 * 0.01 + f64::MIN_POSITIVE) * D as f64).sqrt();
         let error = sum5 * width / denominator;
         largest = largest.max(error);
         // Zero, but for a state that left the numbers.
-        poison += error * 0.0;
+        poison = poison + error * 0.0;
     }
     // Below this the growth limit rules anyway; keeps the power finite.
-    largest.max(Lanes::splat(1e-12)) + poison
+    largest.max(zero.constant(1e-12)) + poison
 }
 
-/// The terms of the dense output of the steps made.
+/// The terms of the dense output of the steps made, which end at `to`.
 #[inline(always)]
-fn dense_terms<const D: usize, const W: usize, const B: usize>(
+fn dense_terms<R: Real<Plain = Lanes<B>>, const D: usize, const W: usize, const B: usize>(
     system: &impl LockstepSystem<D, W, B>,
+    to: &[[R; W]; D],
     all: &mut Lockstep<D, W, B>,
 ) {
-    stages(system, all, STAGES + 1..=STAGES_WITH_DENSE - 1);
-    let width = all.done;
-    let (first, end) = (all.k[0], all.k[STAGES]);
+    let zero = to[0][0];
+    stages(zero, system, all, STAGES + 1..=STAGES_WITH_DENSE - 1);
+    let width = zero.with_plain(all.done);
     for d in 0..D {
+        all.to[d] = zero.each_plain(to[d]);
         for w in 0..W {
-            let change = all.to[d][w] - all.from[d][w];
-            all.terms[0][d][w] = change;
-            all.terms[1][d][w] = first[d][w] * width - change;
-            all.terms[2][d][w] = change * 2.0 - (end[d][w] + first[d][w]) * width;
+            let plain = [all.from[d][w], all.k[0][d][w], all.k[STAGES][d][w]];
+            let [from, first, end] = zero.with_each_plain(plain);
+            let change = to[d][w] - from;
+            all.terms[0][d][w] = change.plain();
+            all.terms[1][d][w] = (first * width - change).plain();
+            all.terms[2][d][w] = (change * 2.0 - (end + first) * width).plain();
         }
     }
     for (row, term) in DENSE.iter().zip(3..) {
-        let sum = combine(row, &all.k);
+        let sum = combine(zero, row, &all.k);
         for d in 0..D {
             for w in 0..W {
-                all.terms[term][d][w] = sum[d][w] * width;
+                all.terms[term][d][w] = (sum[d][w] * width).plain();
             }
         }
     }
@@ -359,9 +402,10 @@ mod tests {
     struct Several(Lanes<4>);
 
     impl LockstepSystem<2, 2, 4> for Several {
-        fn derivative(&self, s: Lanes<4>, y: &LockstepState<2, 2, 4>) -> LockstepState<2, 2, 4> {
-            let w2 = -(self.0 * self.0);
-            let direct = [s, self.0 * -2.0 * y[0][0]];
+        fn derivative<R: Real<Plain = Lanes<4>>>(&self, s: R, y: &[[R; 2]; 2]) -> [[R; 2]; 2] {
+            let frequency = s.with_plain(self.0);
+            let w2 = -(frequency * frequency);
+            let direct = [s, frequency * -2.0 * y[0][0]];
             [y[1], [y[0][0] * w2 + direct[0], y[0][1] * w2 + direct[1]]]
         }
     }
@@ -417,7 +461,7 @@ mod tests {
             if busy.iter().all(Option::is_none) {
                 return ways;
             }
-            attempt(&system, &mut lockstep);
+            attempt(Lanes::ZERO, &system, &mut lockstep);
             for (lane, slot) in busy.iter_mut().enumerate() {
                 let Some(i) = *slot else { continue };
                 assert_ne!(lockstep.outcome(lane), Outcome::Idle);
