@@ -116,6 +116,13 @@ pub fn clipping(
 /// accelerations, and positions that stop before the impactor does.
 pub(crate) fn clipped_channels(recording: &Recording, window: (f64, f64)) -> Vec<Finding> {
     let found = recording.channels.iter().filter_map(|channel| {
+        let looks = matches!(
+            channel.quantity,
+            Quantity::Force | Quantity::Acceleration | Quantity::Displacement | Quantity::Angle
+        );
+        if !looks {
+            return None;
+        }
         let values = &channel.samples;
         let times: Vec<f64> = (0..values.len()).map(|i| channel.times.at(i)).collect();
         let first = times.partition_point(|&t| t < window.0);
@@ -176,14 +183,16 @@ impl Pulse<'_> {
 
     /// Whether a run at the limit begins and ends with a corner that no rounded top has.
     fn sharp(&self, run: &Range<usize>) -> bool {
-        let least = SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
+        if run.len() < LEAST_SHARP {
+            return false;
+        }
         let before = run.start.checked_sub(1).and_then(|i| self.values.get(i));
         let Some((before, after)) = before.zip(self.values.get(run.end)) else {
             return false;
         };
         let drops = [before, after].map(|v| (v - self.limit).abs());
-        let steep = drops[0].max(drops[1]) > SHARP * self.height;
-        run.len() >= LEAST_SHARP && steep && drops[0].min(drops[1]) > least
+        let least = || SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
+        drops[0].max(drops[1]) > SHARP * self.height && drops[0].min(drops[1]) > least()
     }
 
     /// Samples at the limit with others between them, where many more lie there than at the
@@ -191,11 +200,14 @@ impl Pulse<'_> {
     fn pieces(&self) -> Option<(Range<usize>, usize)> {
         let own = self.contact.clone();
         let at: Vec<usize> = own.filter(|&i| self.values[i] == self.limit).collect();
+        if at.len() < LEAST_PILED {
+            return None;
+        }
         let mut below: Vec<f64> = self.values[self.contact.clone()].to_vec();
         below.sort_by(|a, b| (self.sign * b).total_cmp(&(self.sign * a)));
         let levels = below.chunk_by(|a, b| a == b).skip(1).take(NEAR_BELOW);
         let most = levels.map(<[f64]>::len).max().unwrap_or(0);
-        if at.len() < LEAST_PILED.max(PILED * most) {
+        if at.len() < PILED * most {
             return None;
         }
         let early = (EARLY * at.len() as f64) as usize;

@@ -5,7 +5,7 @@ pub(crate) mod scale;
 
 use crate::contact_window::{LEAST_SAMPLES, RINGING_PEAK, windows};
 use crate::error::{Error, Times};
-use crate::noise::estimate::{baseline, median};
+use crate::noise::estimate::{baseline, median, median_of};
 use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, wander};
 use crate::trigger::scale::{
     GAUSSIAN_OVER_MEDIAN, Level, PulseScale, RunningSums, pulse_scale, quieter, white_noise,
@@ -264,10 +264,10 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     let n = signal.values.len();
 
     // A first guess of zero and sign.
-    let (pilot, zero_from_end) = pilot_level(signal.values);
+    let sample_noise = white_noise(signal.values);
+    let (pilot, zero_from_end) = pilot_level(signal.values, sample_noise);
     let keeps = options.baseline == Baseline::Keep;
     let centre = if keeps { 0.0 } else { pilot };
-    let sample_noise = white_noise(signal.values);
     let sums = RunningSums::of(signal.values);
     let PulseScale {
         top,
@@ -303,9 +303,10 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     loop {
         let height = averaged[top] - centre;
         let quiet = quiet_stretch(signal.times, signal.values, before, (height, rise));
-        let (mean, deviation) = baseline(&signal.values[quiet.clone()])
-            .unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
-        let usual = usual_deviation(&signal.values[quiet.clone()]).unwrap_or(0.0);
+        let own = &signal.values[quiet.clone()];
+        let of_own = baseline(own);
+        let (mean, deviation) = of_own.unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
+        let usual = usual_deviation(own, of_own).unwrap_or(0.0);
         contacts.deviation = deviation;
         contacts.before = before;
         contacts.trend_sd = wander(signal.values, &quiet, height.abs());
@@ -436,14 +437,16 @@ fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
     if averaged.len() < LEAST_AVERAGES * smoothing {
         return white;
     }
-    usual_deviation(averaged).map_or(white, |seen| seen.max(white))
+    usual_deviation(averaged, baseline(averaged)).map_or(white, |seen| seen.max(white))
 }
 
 /// Standard deviation of a baseline; where contacts are among it, of what most samples do.
-fn usual_deviation(values: &[f64]) -> Option<f64> {
-    let (centre, seen) = baseline(values)?;
-    let apart: Vec<f64> = values.iter().map(|v| (v - centre).abs()).collect();
-    let usual = GAUSSIAN_OVER_MEDIAN * median(&apart)?;
+///
+/// * `found`: their [`baseline`]
+fn usual_deviation(values: &[f64], found: Option<(f64, f64)>) -> Option<f64> {
+    let (centre, seen) = found?;
+    let apart = values.iter().map(|v| (v - centre).abs());
+    let usual = GAUSSIAN_OVER_MEDIAN * median_of(apart)?;
     // None of most samples: they are steps of a converter.
     Some(match usual > 0.0 && seen > CONTACTS_AMONG * usual {
         true => usual,
@@ -453,7 +456,9 @@ fn usual_deviation(values: &[f64]) -> Option<f64> {
 
 /// Level of the signal outside contact, and whether it comes from the end: that
 /// is so if the signal changes in its first samples and rests in its last.
-fn pilot_level(values: &[f64]) -> (f64, bool) {
+///
+/// * `noise`: standard deviation of a sample
+fn pilot_level(values: &[f64], noise: f64) -> (f64, bool) {
     let n = values.len();
     let samples = pilot_samples(n);
     let middle = |part: &[f64]| median(part).unwrap_or(0.0);
@@ -467,7 +472,7 @@ fn pilot_level(values: &[f64]) -> (f64, bool) {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Of the difference of two medians, each of half of the samples.
-    let chance = white_noise(values) * (TAU / samples as f64).sqrt();
+    let chance = noise * (TAU / samples as f64).sqrt();
     let changes = first_change > (LEVEL * (high - low)).max(PILOT_CLEAR * chance);
     if changes && last_change < first_change / 3.0 {
         return (last, true);

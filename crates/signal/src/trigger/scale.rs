@@ -1,6 +1,6 @@
 //! How long a contact lasts and over what to average it, when noise hides it.
 
-use crate::noise::estimate::median;
+use crate::noise::estimate::median_of;
 use std::ops::Range;
 
 /// A pulse stands out if its averaged height is this many standard deviations
@@ -136,11 +136,9 @@ pub fn quieter(
 ///
 /// Zero of fewer than 3 samples and of a signal that mostly does not change.
 pub fn white_noise(values: &[f64]) -> f64 {
-    let bends: Vec<f64> = values
-        .windows(3)
-        .map(|v| (v[0] - 2.0 * v[1] + v[2]).abs())
-        .collect();
-    median(&bends).unwrap_or(0.0) * GAUSSIAN_OVER_MEDIAN / 6f64.sqrt()
+    let bends = values.windows(3);
+    let bends = bends.map(|v| (v[0] - 2.0 * v[1] + v[2]).abs());
+    median_of(bends).unwrap_or(0.0) * GAUSSIAN_OVER_MEDIAN / 6f64.sqrt()
 }
 
 /// The shortest length, doubled from 1, over which the largest mean is clear of
@@ -199,10 +197,10 @@ impl<'a> RunningSums<'a> {
         let mut sums = Vec::with_capacity(values.len() + 1);
         sums.push(0.0);
         let mut sum = 0.0;
-        for value in values {
+        sums.extend(values.iter().map(|value| {
             sum += value;
-            sums.push(sum);
-        }
+            sum
+        }));
         Self { values, sums }
     }
 
