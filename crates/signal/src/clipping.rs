@@ -4,7 +4,7 @@ use crate::finding::Finding;
 use crate::noise::estimate::{median, quantum};
 use crate::polynomial::{PolynomialFit, fit_polynomial};
 use crate::recording::{Quantity, Recording};
-use crate::trigger::scale::{index_of_largest, moving_mean, white_noise};
+use crate::trigger::scale::{index_of_largest, largest, moving_mean, white_noise};
 use std::ops::Range;
 
 /// Most samples of a recording that lie beyond a limit: single wrong ones.
@@ -85,10 +85,7 @@ pub fn clipping(
     let first = times.partition_point(|&t| t < window.0);
     let last = times.partition_point(|&t| t <= window.1);
     let sign = if negative { -1.0 } else { 1.0 };
-    let limit = values[first..last]
-        .iter()
-        .copied()
-        .reduce(|a, b| if sign * b > sign * a { b } else { a })?;
+    let limit = far_end(values.get(first..last)?, sign)?;
     let beyond = |v: &&f64| sign * **v > sign * limit;
     if values.iter().filter(beyond).count() > MOST_BEYOND {
         return None;
@@ -144,8 +141,8 @@ pub(crate) fn clipped_channels(recording: &Recording, window: (f64, f64)) -> Vec
 
 /// The extreme of a signal on the side of `sign`.
 fn far_end(values: &[f64], sign: f64) -> Option<f64> {
-    let further = |a: f64, b: f64| if sign * b > sign * a { b } else { a };
-    values.iter().copied().reduce(further)
+    let largest = sign * largest(values, |v| sign * v);
+    largest.is_finite().then_some(largest)
 }
 
 /// A signal around the contact that is looked at.

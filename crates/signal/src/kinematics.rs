@@ -44,10 +44,15 @@ pub fn count_length(counts_per_revolution: f64, arm: f64) -> f64 {
 /// * `angle_at_contact`: θ₀, where the arm is perpendicular to the displacement; rad
 /// * `arm`: r; m
 pub fn displacement_from_angles(angles: &[f64], angle_at_contact: f64, arm: f64) -> Vec<f64> {
-    angles
-        .iter()
-        .map(|angle| arm * (angle - angle_at_contact).sin())
-        .collect()
+    // An encoder stays at an angle for several samples.
+    let mut last = (f64::NAN, f64::NAN);
+    let place = |&angle: &f64| {
+        if angle != last.0 {
+            last = (angle, arm * (angle - angle_at_contact).sin());
+        }
+        last.1
+    };
+    angles.iter().map(place).collect()
 }
 
 /// Displacement rate by central difference, for the samples 1 … n − 2:

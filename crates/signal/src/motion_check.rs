@@ -89,9 +89,10 @@ pub(crate) fn check_motion(
     let mut found = None;
     for _ in 0..STEPS {
         // Place, velocity, acceleration beside the force, gain, gain × delay.
+        let mut before = 0;
         let row = |t: &f64| {
             let u = (t - place.onset) / scale;
-            let (way, velocity) = lost.at(t + delay);
+            let (way, velocity) = lost.at(t + delay, &mut before);
             [1.0, u, u * u, -way, -velocity]
         };
         let rows: Vec<[f64; COEFFICIENTS]> = times.iter().map(row).collect();
@@ -179,9 +180,14 @@ impl<'a> Lost<'a> {
     }
 
     /// Displacement and velocity that are lost until `time`; m, m/s.
-    fn at(&self, time: f64) -> (f64, f64) {
+    ///
+    /// * `before`: samples passed until a time that is no later
+    fn at(&self, time: f64, before: &mut usize) -> (f64, f64) {
         let last = self.times.len() - 1;
-        let i = self.times[1..last].partition_point(|&t| t < time);
+        while *before + 1 < last && self.times[*before + 1] < time {
+            *before += 1;
+        }
+        let i = *before;
         let h = self.times[i + 1] - self.times[i];
         let u = (time - self.times[i]).clamp(0.0, h);
         let slope = (self.pushes[i + 1] - self.pushes[i]) / h;

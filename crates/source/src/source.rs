@@ -137,6 +137,10 @@ impl Source {
         if count > self.length.saturating_sub(offset) {
             return Err(self.truncated(offset, "the data here", count));
         }
+        if let Bytes::Memory(bytes) = &self.bytes {
+            let start = (self.start + offset) as usize;
+            return Ok(bytes[start..start + count as usize].to_vec());
+        }
         let mut buffer = vec![0; count as usize];
         self.read_at(offset, &mut buffer)?;
         Ok(buffer)

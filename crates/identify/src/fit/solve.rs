@@ -359,7 +359,10 @@ fn complete<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     minimum: &Minimum<P>,
     limits: &Limits,
 ) -> Option<Solution> {
-    let (equations, rows) = estimator.rows(&minimum.parameters)?;
+    let (equations, rows) = match limits.wanted {
+        Wanted::Residuals => estimator.residuals(&minimum.parameters),
+        Wanted::Covariance | Wanted::Intervals(_) => estimator.rows(&minimum.parameters),
+    }?;
     let values = estimator.values(&minimum.parameters);
     let free = estimator.free();
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();

@@ -9,7 +9,7 @@ use crate::rig::motion::Motion;
 use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
-use windfall_numerics::ode::step::Tolerance;
+use windfall_numerics::ode::step::{StepError, Tolerance};
 use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::root::bracketed_root;
 pub use windfall_signal::instrument::Trajectory;
@@ -85,7 +85,7 @@ pub fn simulate_rig(
     let mut duration = FIRST_DURATION;
     for _ in 0..LARGEST_DOUBLINGS {
         let mut summary = ImpactSummary::default();
-        let separation = follow(&event, 0.0, duration, &mut |segment, piece| {
+        let separation = follow_fast(&event, 0.0, duration, &mut |segment, piece| {
             if piece == Piece::Contact {
                 tally(&event, segment, &mut summary);
             }
@@ -125,7 +125,7 @@ pub fn trajectory(
         force: zeros.clone(),
         acceleration: zeros,
     };
-    follow(&event, first.min(0.0), last, &mut |segment, piece| {
+    follow_fast(&event, first.min(0.0), last, &mut |segment, piece| {
         read(&event, segment, piece, last, &mut out);
     })?;
     Ok(out)
@@ -162,6 +162,38 @@ fn event(law: &Law, rig: &Rig, velocity: f64, end: EndRule) -> Result<Event, Err
     })
 }
 
+/// [`follow`], compiled for the machine's vector instructions: without them each fused
+/// multiplication and addition is a call.
+fn follow_fast(
+    event: &Event,
+    before: f64,
+    after: f64,
+    sink: &mut impl FnMut(&Segment<1>, Piece),
+) -> Result<Option<Separation>, StepError> {
+    pulp::Arch::new().dispatch(Follow {
+        event,
+        before,
+        after,
+        sink,
+    })
+}
+
+struct Follow<'a, F> {
+    event: &'a Event,
+    before: f64,
+    after: f64,
+    sink: &'a mut F,
+}
+
+impl<F: FnMut(&Segment<1>, Piece)> pulp::WithSimd for Follow<'_, F> {
+    type Output = Result<Option<Separation>, StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        follow(self.event, self.before, self.after, self.sink)
+    }
+}
+
 fn complete(
     found: ImpactSummary,
     separation: &Separation,
@@ -191,6 +223,7 @@ struct State {
     force_rate: f64,
 }
 
+#[inline(always)]
 fn state_at(event: &Event, segment: &Segment<1>, sigma: f64) -> State {
     let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
     let law = event
@@ -214,6 +247,7 @@ fn state_at(event: &Event, segment: &Segment<1>, sigma: f64) -> State {
 }
 
 /// Adds the peaks and the impulse of a piece of the contact.
+#[inline(always)]
 fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
     let end = sigma_of(segment, segment.to);
     let state = |sigma: f64| state_at(event, segment, sigma);
@@ -253,6 +287,7 @@ fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
     }
 }
 
+#[inline(always)]
 fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
     (scaled_time(time, segment.power) - segment.step.start) / segment.step.width
 }
@@ -277,9 +312,11 @@ fn highest_on(
     value: impl Fn(f64) -> f64,
     slope: impl Fn(f64) -> f64,
 ) -> f64 {
-    let (best, most) = (0_usize..).zip(grid).fold((0, f64::NEG_INFINITY), |best, next| {
-        if next.1 > best.1 { next } else { best }
-    });
+    let (best, most) = (0_usize..)
+        .zip(grid)
+        .fold((0, f64::NEG_INFINITY), |best, next| {
+            if next.1 > best.1 { next } else { best }
+        });
     let low = point(end, best.saturating_sub(1));
     let high = point(end, (best + 1).min(SEARCH_POINTS));
     let root = bracketed_root(low, high, PEAK_TOLERANCE, slope);
@@ -291,6 +328,7 @@ fn highest_on(
 }
 
 /// Reads those of the times that lie in a piece of the motion; `last` is the last time.
+#[inline(always)]
 fn read(event: &Event, segment: &Segment<1>, piece: Piece, last: f64, out: &mut Trajectory) {
     let first = out.times.partition_point(|time| *time < segment.from);
     let behind = out.times.partition_point(|time| *time <= segment.to);

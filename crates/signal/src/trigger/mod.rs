@@ -8,7 +8,8 @@ use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median, median_of};
 use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, wander};
 use crate::trigger::scale::{
-    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, RunningSums, pulse_scale, quieter, white_noise,
+    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, RunningSums, largest, pulse_scale, quieter,
+    white_noise,
 };
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -324,7 +325,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         };
         let smoothing = contacts.smoothing;
         let smooth = raised_sums.means(smoothing);
-        let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let largest = largest(&smooth, |v| v);
         contacts.threshold = level(&contacts, options, noise(smoothing), largest, first_pass);
         let release = options.release * contacts.threshold;
         contacts.windows = windows(
@@ -370,7 +371,7 @@ fn raised(values: &[f64], zero: f64, sign: f64) -> Vec<f64> {
 fn no_contact(signal: &Signal, raised: &[f64], threshold: f64) -> Error {
     Error::NoContact {
         channel: signal.name.to_owned(),
-        largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        largest: largest(raised, |v| v),
         threshold,
         unit: signal.unit,
     }
@@ -469,8 +470,7 @@ fn pilot_level(values: &[f64], noise: f64) -> (f64, bool) {
     };
     let (first, first_change) = level(&values[..samples]);
     let (last, last_change) = level(&values[n - samples..]);
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = (-largest(values, |v| -v), largest(values, |v| v));
     // Of the difference of two medians, each of half of the samples.
     let chance = noise * (TAU / samples as f64).sqrt();
     let changes = first_change > (LEVEL * (high - low)).max(PILOT_CLEAR * chance);
