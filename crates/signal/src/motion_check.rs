@@ -159,7 +159,10 @@ impl<'a> Lost<'a> {
         let bent = response.arm.map_or(0.0, |arm| arm.compliance) * mass;
         let pushes: Vec<f64> = force.values.iter().map(|value| value / mass).collect();
         let (mut velocity, mut way) = (0.0, 0.0);
-        let (mut velocities, mut ways) = (vec![0.0], vec![0.0]);
+        let room = || Vec::with_capacity(pushes.len());
+        let (mut velocities, mut ways) = (room(), room());
+        velocities.push(0.0);
+        ways.push(0.0);
         for (times, push) in force.times.windows(2).zip(pushes.windows(2)) {
             if times[1] >= from {
                 let h = times[1] - times[0];
