@@ -156,13 +156,8 @@ fn kind(line: &[u8], missing: &MissingWords, comment: Option<&str>) -> Line {
         return Line::Blank;
     };
     let text = &line[first..];
-    let comments = ["#", "%", "//"]
-        .iter()
-        .any(|mark| text.starts_with(mark.as_bytes()));
-    if match comment {
-        Some(mark) => text.starts_with(mark.as_bytes()),
-        None => comments,
-    } {
+    let begins = |mark: &str| text.starts_with(mark.as_bytes());
+    if comment.map_or_else(|| ["#", "%", "//"].into_iter().any(begins), begins) {
         return Line::Blank;
     }
     let unsigned = text.trim_ascii_start();

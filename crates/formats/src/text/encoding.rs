@@ -89,13 +89,8 @@ pub fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
         return (Encoding::Utf8, 0);
     }
     // Tables are nearly all ASCII, so in UTF-16 every other byte is zero.
-    let zeros = |odd: usize| {
-        head.iter()
-            .skip(odd)
-            .step_by(2)
-            .filter(|b| **b == 0)
-            .count()
-    };
+    let every_other = |odd: usize| head.iter().skip(odd).step_by(2);
+    let zeros = |odd: usize| every_other(odd).filter(|b| **b == 0).count();
     let half = head.len() / 2;
     if half > 1 && zeros(1) * 10 > half * 9 && zeros(0) == 0 {
         return (Encoding::Utf16Le, 0);

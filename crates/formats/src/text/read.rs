@@ -105,9 +105,7 @@ impl TextReader {
             headed,
         })
     }
-}
 
-impl TextReader {
     /// Number of columns of the file, also of those that are left out.
     pub(crate) fn columns(&self) -> usize {
         self.table.names.len()

@@ -5,11 +5,10 @@ pub(crate) mod scale;
 
 use crate::contact_window::{LEAST_SAMPLES, RINGING_PEAK, windows};
 use crate::error::{Error, Times};
-use crate::noise::estimate::{baseline, median, median_of};
-use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, wander};
+use crate::noise::estimate::{baseline, median};
+use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, usual_deviation, wander};
 use crate::trigger::scale::{
-    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, RunningSums, largest, pulse_scale, quieter,
-    white_noise,
+    Level, PulseScale, RunningSums, largest, pulse_scale, quieter, white_noise,
 };
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -40,10 +39,6 @@ const FIXED_CLEAR: f64 = 3.0;
 /// The noise of the averaged signal is measured where this many independent
 /// averages lie before contact.
 const LEAST_AVERAGES: usize = 40;
-
-/// Ratio of a standard deviation to that of Gaussian noise of the same median magnitude from
-/// which it is contacts, not noise, that it shows; 1.
-const CONTACTS_AMONG: f64 = 2.0;
 
 /// Above what a force counts as contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -439,20 +434,6 @@ fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
         return white;
     }
     usual_deviation(averaged, baseline(averaged)).map_or(white, |seen| seen.max(white))
-}
-
-/// Standard deviation of a baseline; where contacts are among it, of what most samples do.
-///
-/// * `found`: their [`baseline`]
-fn usual_deviation(values: &[f64], found: Option<(f64, f64)>) -> Option<f64> {
-    let (centre, seen) = found?;
-    let apart = values.iter().map(|v| (v - centre).abs());
-    let usual = GAUSSIAN_OVER_MEDIAN * median_of(apart)?;
-    // None of most samples: they are steps of a converter.
-    Some(match usual > 0.0 && seen > CONTACTS_AMONG * usual {
-        true => usual,
-        false => seen,
-    })
 }
 
 /// Level of the signal outside contact, and whether it comes from the end: that
