@@ -19,6 +19,18 @@ pub enum AnyOutcome {
 }
 
 impl AnyOutcome {
+    /// The outcome as indented JSON.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn json(&self) -> serde_json::Result<String> {
+        match self {
+            // Compiled where all of its parts are.
+            Self::Impacts(own) => own.json(),
+            Self::Measured(own) => serde_json::to_string_pretty(own),
+        }
+    }
+
     /// How the results came about.
     pub fn status(&self) -> &StatusOutcome {
         match self {

@@ -4,7 +4,7 @@ use crate::finding::Finding;
 use crate::noise::estimate::{median, quantum};
 use crate::polynomial::{PolynomialFit, fit_polynomial};
 use crate::recording::{Quantity, Recording};
-use crate::trigger::scale::{index_of_largest, moving_mean, white_noise};
+use crate::trigger::scale::{index_of_largest, largest, moving_mean, white_noise};
 use std::ops::Range;
 
 /// Most samples of a recording that lie beyond a limit: single wrong ones.
@@ -85,10 +85,7 @@ pub fn clipping(
     let first = times.partition_point(|&t| t < window.0);
     let last = times.partition_point(|&t| t <= window.1);
     let sign = if negative { -1.0 } else { 1.0 };
-    let limit = values[first..last]
-        .iter()
-        .copied()
-        .reduce(|a, b| if sign * b > sign * a { b } else { a })?;
+    let limit = far_end(values.get(first..last)?, sign)?;
     let beyond = |v: &&f64| sign * **v > sign * limit;
     if values.iter().filter(beyond).count() > MOST_BEYOND {
         return None;
@@ -116,6 +113,13 @@ pub fn clipping(
 /// accelerations, and positions that stop before the impactor does.
 pub(crate) fn clipped_channels(recording: &Recording, window: (f64, f64)) -> Vec<Finding> {
     let found = recording.channels.iter().filter_map(|channel| {
+        let looks = matches!(
+            channel.quantity,
+            Quantity::Force | Quantity::Acceleration | Quantity::Displacement | Quantity::Angle
+        );
+        if !looks {
+            return None;
+        }
         let values = &channel.samples;
         let times: Vec<f64> = (0..values.len()).map(|i| channel.times.at(i)).collect();
         let first = times.partition_point(|&t| t < window.0);
@@ -137,8 +141,8 @@ pub(crate) fn clipped_channels(recording: &Recording, window: (f64, f64)) -> Vec
 
 /// The extreme of a signal on the side of `sign`.
 fn far_end(values: &[f64], sign: f64) -> Option<f64> {
-    let further = |a: f64, b: f64| if sign * b > sign * a { b } else { a };
-    values.iter().copied().reduce(further)
+    let largest = sign * largest(values, |v| sign * v);
+    largest.is_finite().then_some(largest)
 }
 
 /// A signal around the contact that is looked at.
@@ -176,14 +180,16 @@ impl Pulse<'_> {
 
     /// Whether a run at the limit begins and ends with a corner that no rounded top has.
     fn sharp(&self, run: &Range<usize>) -> bool {
-        let least = SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
+        if run.len() < LEAST_SHARP {
+            return false;
+        }
         let before = run.start.checked_sub(1).and_then(|i| self.values.get(i));
         let Some((before, after)) = before.zip(self.values.get(run.end)) else {
             return false;
         };
         let drops = [before, after].map(|v| (v - self.limit).abs());
-        let steep = drops[0].max(drops[1]) > SHARP * self.height;
-        run.len() >= LEAST_SHARP && steep && drops[0].min(drops[1]) > least
+        let least = || SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
+        drops[0].max(drops[1]) > SHARP * self.height && drops[0].min(drops[1]) > least()
     }
 
     /// Samples at the limit with others between them, where many more lie there than at the
@@ -191,11 +197,14 @@ impl Pulse<'_> {
     fn pieces(&self) -> Option<(Range<usize>, usize)> {
         let own = self.contact.clone();
         let at: Vec<usize> = own.filter(|&i| self.values[i] == self.limit).collect();
+        if at.len() < LEAST_PILED {
+            return None;
+        }
         let mut below: Vec<f64> = self.values[self.contact.clone()].to_vec();
         below.sort_by(|a, b| (self.sign * b).total_cmp(&(self.sign * a)));
         let levels = below.chunk_by(|a, b| a == b).skip(1).take(NEAR_BELOW);
         let most = levels.map(<[f64]>::len).max().unwrap_or(0);
-        if at.len() < LEAST_PILED.max(PILED * most) {
+        if at.len() < PILED * most {
             return None;
         }
         let early = (EARLY * at.len() as f64) as usize;

@@ -361,23 +361,24 @@ fn peak_force(track: &Track, place: &Surroundings, zero_sd: f64) -> Option<Uncer
         let at = |t: &f64| d[0] + (t - times[top]) * (d[1] + 0.5 * d[2] * (t - times[top]));
         times[from..to].iter().map(at).collect::<Vec<_>>()
     };
-    let of_noise = fit
-        .as_ref()
-        .map_or(track.noise, |fit| sd_of_largest(&level(fit), track.noise));
-    let single = Uncertain::new(largest, of_noise.hypot(zero_sd));
+    let single = || {
+        let of_noise = fit.as_ref();
+        let of_noise = of_noise.map_or(track.noise, |fit| sd_of_largest(&level(fit), track.noise));
+        Uncertain::new(largest, of_noise.hypot(zero_sd))
+    };
     if track.noise <= CLEAN_PEAK * largest {
-        return Some(single);
+        return Some(single());
     }
     let smooth = local_polynomial(times, values, window, PEAK_ORDER, 0);
     let smooth = smooth.and_then(|values| values.into_iter().reduce(f64::max));
     // Quadratics half a window apart hardly share their noise, and compete likewise.
-    let of_smooth = fit.map_or(track.noise, |fit| {
-        let all = level(&fit);
+    let of_smooth = fit.as_ref().map_or(track.noise, |fit| {
+        let all = level(fit);
         let apart: Vec<f64> = [0, all.len() / 2, all.len() - 1].map(|i| all[i]).to_vec();
         sd_of_largest(&apart, fit.noise_gains[0] * track.noise)
     });
     let smooth = smooth.map(|value| Uncertain::new(value, of_smooth.hypot(zero_sd)));
-    smooth.or(Some(single))
+    Some(smooth.unwrap_or_else(single))
 }
 
 /// Standard uncertainties of onset and end: what noise of the averaged force does to the

@@ -1,6 +1,6 @@
 //! The loop of force over displacement.
 
-use crate::kinematics::value_at;
+use crate::kinematics::Walk;
 
 /// Work along a loop of force over displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,20 +26,26 @@ pub fn force_loop(
     onset: f64,
     end: f64,
 ) -> Option<ForceLoop> {
-    let mut times: Vec<f64> = force.0.iter().chain(displacement.0).copied().collect();
-    times.retain(|time| (onset..=end).contains(time));
-    times.extend([onset, end]);
-    times.sort_by(f64::total_cmp);
+    let inside = |times: &[f64]| {
+        let first = times.partition_point(|&t| t < onset);
+        first..times.partition_point(|&t| t <= end).max(first)
+    };
+    let own = &force.0[inside(force.0)];
+    let other = &displacement.0[inside(displacement.0)];
+    let mut times = vec![onset];
+    times.extend(own);
+    if own != other {
+        times.extend(other);
+        times.sort_by(f64::total_cmp);
+    }
+    times.push(end);
     times.dedup();
     if times.len() < 4 {
         return None;
     }
-    let at = |time: &f64| {
-        (
-            value_at(displacement.0, displacement.1, *time),
-            value_at(force.0, force.1, *time),
-        )
-    };
+    let mut places = Walk::along(displacement.0, displacement.1);
+    let mut forces = Walk::along(force.0, force.1);
+    let at = |time: &f64| (places.at(*time), forces.at(*time));
     let points: Vec<(f64, f64)> = times.iter().map(at).collect();
     let top = (0..points.len()).max_by(|&a, &b| points[a].0.total_cmp(&points[b].0))?;
     let work = |points: &[(f64, f64)]| -> f64 {

@@ -4,7 +4,7 @@ use crate::encoder::edge_rate::{CountTimes, edges};
 use crate::finding::Finding;
 use crate::linear_fit::linear_fit;
 use crate::track::{Track, mean_interval};
-use windfall_numerics::cholesky::solve;
+use windfall_numerics::cholesky::SINGULAR;
 
 /// Steps on either side with which each is compared.
 const NEIGHBOURS: usize = 10;
@@ -161,16 +161,31 @@ fn step_between(
     let (left, left_moments) = side(&times[..before], &values[..before]);
     let (right, right_moments) = side(&times[before..], &values[before..]);
     let power = |j: usize| if j < 4 { j } else { j - 4 };
-    let matrix: [[f64; 6]; 6] = std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            let p = power(i) + power(j);
-            right[p] + if i.max(j) < 4 { left[p] } else { 0.0 }
-        })
-    });
-    let sides = std::array::from_fn(|i| {
-        right_moments[power(i)] + if i < 4 { left_moments[i] } else { 0.0 }
-    });
-    Some(solve(&matrix, &sides)?[4])
+    let entry = |i: usize, j: usize| {
+        let p = power(i) + power(j);
+        right[p] + if i.max(j) < 4 { left[p] } else { 0.0 }
+    };
+    // L D Lᵀ x = b, of which x₅ and x₄ come first.
+    let (mut lower, mut inverse, mut x) = ([[0.0; 6]; 6], [0.0; 6], [0.0; 6]);
+    for i in 0..6 {
+        let mut scaled = [0.0; 6];
+        let mut pivot = entry(i, i);
+        x[i] = right_moments[power(i)] + if i < 4 { left_moments[i] } else { 0.0 };
+        for j in 0..i {
+            scaled[j] = entry(i, j);
+            for k in 0..j {
+                scaled[j] -= scaled[k] * lower[j][k];
+            }
+            lower[i][j] = scaled[j] * inverse[j];
+            pivot -= scaled[j] * lower[i][j];
+            x[i] -= lower[i][j] * x[j];
+        }
+        if pivot.is_nan() || pivot <= SINGULAR * entry(i, i) {
+            return None;
+        }
+        inverse[i] = pivot.recip();
+    }
+    Some(x[4] * inverse[4] - lower[5][4] * x[5] * inverse[5])
 }
 
 #[cfg(test)]

@@ -44,10 +44,15 @@ pub fn count_length(counts_per_revolution: f64, arm: f64) -> f64 {
 /// * `angle_at_contact`: θ₀, where the arm is perpendicular to the displacement; rad
 /// * `arm`: r; m
 pub fn displacement_from_angles(angles: &[f64], angle_at_contact: f64, arm: f64) -> Vec<f64> {
-    angles
-        .iter()
-        .map(|angle| arm * (angle - angle_at_contact).sin())
-        .collect()
+    // An encoder stays at an angle for several samples.
+    let mut last = (f64::NAN, f64::NAN);
+    let place = |&angle: &f64| {
+        if angle != last.0 {
+            last = (angle, arm * (angle - angle_at_contact).sin());
+        }
+        last.1
+    };
+    angles.iter().map(place).collect()
 }
 
 /// Displacement rate by central difference, for the samples 1 … n − 2:
@@ -88,7 +93,46 @@ pub fn value_at(times: &[f64], values: &[f64], time: f64) -> f64 {
 
 /// [`value_at`] of several signals with the same times.
 pub fn values_at<const N: usize>(times: &[f64], values: [&[f64]; N], time: f64) -> [f64; N] {
-    let after = times.partition_point(|&t| t < time);
+    between(times, values, times.partition_point(|&t| t < time), time)
+}
+
+/// [`value_at`] at times that rise.
+#[derive(Clone, Debug)]
+pub struct Walk<'a> {
+    times: &'a [f64],
+    values: &'a [f64],
+    /// Samples before the last time.
+    after: usize,
+}
+
+impl<'a> Walk<'a> {
+    /// Along a signal, from its begin.
+    pub fn along(times: &'a [f64], values: &'a [f64]) -> Self {
+        let after = 0;
+        Self {
+            times,
+            values,
+            after,
+        }
+    }
+
+    /// Value at `time`, which is no earlier than the one asked for before.
+    pub fn at(&mut self, time: f64) -> f64 {
+        while self.times.get(self.after).is_some_and(|&t| t < time) {
+            self.after += 1;
+        }
+        between(self.times, [self.values], self.after, time)[0]
+    }
+}
+
+/// Values at `time`, before which `after` samples lie.
+#[inline]
+fn between<const N: usize>(
+    times: &[f64],
+    values: [&[f64]; N],
+    after: usize,
+    time: f64,
+) -> [f64; N] {
     if after == 0 {
         return values.map(|own| own[0]);
     }

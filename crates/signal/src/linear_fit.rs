@@ -27,35 +27,35 @@ pub(crate) fn linear_fit<const P: usize>(
     values: &[f64],
     row: impl Fn(f64) -> [f64; P],
 ) -> Option<LinearFit<P>> {
+    let rows: Vec<[f64; P]> = times.iter().map(|&t| row(t)).collect();
+    fit_rows(&rows, values)
+}
+
+/// [`linear_fit`] with the row of each value.
+pub(crate) fn fit_rows<const P: usize>(rows: &[[f64; P]], values: &[f64]) -> Option<LinearFit<P>> {
     if values.len() <= P {
         return None;
     }
-    let rows: Vec<[f64; P]> = times.iter().map(|&t| row(t)).collect();
-    // Columns of one size.
-    let size: [f64; P] =
-        std::array::from_fn(|j| rows.iter().map(|r| r[j] * r[j]).sum::<f64>().sqrt());
     let mut matrix = [[0.0; P]; P];
     let mut right = [0.0; P];
     // The lower triangle, which is all that the inverse reads.
     for (row, value) in rows.iter().zip(values) {
         for i in 0..P {
-            let scaled = row[i] / size[i];
-            right[i] += scaled * value;
+            right[i] += row[i] * value;
             for j in 0..=i {
-                matrix[i][j] += scaled * row[j] / size[j];
+                matrix[i][j] += row[i] * row[j];
             }
         }
     }
+    // Its rows are scaled to one size there.
     let inverse = inverse(&matrix)?;
     let coefficients: [f64; P] =
-        std::array::from_fn(|i| (0..P).map(|j| inverse[i][j] * right[j]).sum::<f64>() / size[i]);
+        std::array::from_fn(|i| (0..P).map(|j| inverse[i][j] * right[j]).sum::<f64>());
     let residual = |(row, value): (&[f64; P], &f64)| value - sum(row, &coefficients);
     let residuals: Vec<f64> = rows.iter().zip(values).map(residual).collect();
     let square = residuals.iter().map(|r| r * r).sum::<f64>() / (residuals.len() - P) as f64;
     let inflation = mean_inflation(persistence(&residuals).unwrap_or(0.0)).max(1.0);
     let variance = square * inflation;
-    let inverse: [[f64; P]; P] =
-        std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] / (size[i] * size[j])));
     Some(LinearFit {
         coefficients,
         deviations: std::array::from_fn(|i| (variance * inverse[i][i]).sqrt()),

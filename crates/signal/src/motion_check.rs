@@ -1,7 +1,7 @@
 //! Whether force and displacement tell of one motion.
 
 use crate::encoder::edge_rate::{CountTimes, edges};
-use crate::linear_fit::{LinearFit, linear_fit, sum};
+use crate::linear_fit::{LinearFit, fit_rows, sum};
 use crate::measure::Surroundings;
 use crate::noise::colour::mean_inflation;
 use crate::response::Response;
@@ -20,6 +20,11 @@ const LEAST_PLACES: usize = 6;
 
 /// Steps towards the delay; each is exact for small changes.
 const STEPS: usize = 20;
+
+/// Coefficients of a comparison: place, velocity, acceleration beside the force, gain, and
+/// gain × delay; the first whose uncertainty is told.
+const COEFFICIENTS: usize = 5;
+const SHAKEN: usize = 3;
 
 /// What Newton's law says of force and displacement together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,19 +89,21 @@ pub(crate) fn check_motion(
     let mut found = None;
     for _ in 0..STEPS {
         // Place, velocity, acceleration beside the force, gain, gain × delay.
-        let row = |t: f64| {
+        let mut before = 0;
+        let row = |t: &f64| {
             let u = (t - place.onset) / scale;
-            let (way, velocity) = lost.at(t + delay);
+            let (way, velocity) = lost.at(t + delay, &mut before);
             [1.0, u, u * u, -way, -velocity]
         };
-        let fit = linear_fit(times, places, row)?;
+        let rows: Vec<[f64; COEFFICIENTS]> = times.iter().map(row).collect();
+        let fit = fit_rows(&rows, places)?;
         let (inverse_gain, product) = (fit.coefficients[3], fit.coefficients[4]);
         if inverse_gain <= 0.0 {
             return None;
         }
-        let shaken = shaken(&fit, times, row, force, mass);
+        let shaken = shaken(&fit, times, &rows, force, mass);
         // The noise of the force enters by way of what the force is found to do.
-        let sd = |i: usize| fit.deviations[i].hypot(inverse_gain * shaken[i]);
+        let sd = |i: usize| fit.deviations[i].hypot(inverse_gain * shaken[i - SHAKEN]);
         let step = product / inverse_gain;
         delay += step.clamp(-0.5 * place.duration(), 0.5 * place.duration());
         found = Some(MotionCheck {
@@ -152,7 +159,10 @@ impl<'a> Lost<'a> {
         let bent = response.arm.map_or(0.0, |arm| arm.compliance) * mass;
         let pushes: Vec<f64> = force.values.iter().map(|value| value / mass).collect();
         let (mut velocity, mut way) = (0.0, 0.0);
-        let (mut velocities, mut ways) = (vec![0.0], vec![0.0]);
+        let room = || Vec::with_capacity(pushes.len());
+        let (mut velocities, mut ways) = (room(), room());
+        velocities.push(0.0);
+        ways.push(0.0);
         for (times, push) in force.times.windows(2).zip(pushes.windows(2)) {
             if times[1] >= from {
                 let h = times[1] - times[0];
@@ -173,9 +183,14 @@ impl<'a> Lost<'a> {
     }
 
     /// Displacement and velocity that are lost until `time`; m, m/s.
-    fn at(&self, time: f64) -> (f64, f64) {
+    ///
+    /// * `before`: samples passed until a time that is no later
+    fn at(&self, time: f64, before: &mut usize) -> (f64, f64) {
         let last = self.times.len() - 1;
-        let i = self.times[1..last].partition_point(|&t| t < time);
+        while *before + 1 < last && self.times[*before + 1] < time {
+            *before += 1;
+        }
+        let i = *before;
         let h = self.times[i + 1] - self.times[i];
         let u = (time - self.times[i]).clamp(0.0, h);
         let slope = (self.pushes[i + 1] - self.pushes[i]) / h;
@@ -190,30 +205,31 @@ impl<'a> Lost<'a> {
     }
 }
 
-/// What the noise of the force leaves in each coefficient, after both integrations.
+/// What the noise of the force leaves in the coefficients from [`SHAKEN`] on, after both
+/// integrations.
 ///
 /// A sample that is off by σ moves every later place by σ h (t − tⱼ)/m.
-fn shaken<const P: usize>(
-    fit: &LinearFit<P>,
+fn shaken(
+    fit: &LinearFit<COEFFICIENTS>,
     times: &[f64],
-    row: impl Fn(f64) -> [f64; P],
+    rows: &[[f64; COEFFICIENTS]],
     force: &Track,
     mass: f64,
-) -> [f64; P] {
+) -> [f64; COEFFICIENTS - SHAKEN] {
     let inflation = mean_inflation(force.persistence.unwrap_or(0.0)).max(1.0);
     let (first, last) = (times[0], times[times.len() - 1]);
     let begin = force.times.partition_point(|&t| t < first);
     let until = force.times.partition_point(|&t| t < last);
     // Σ wᵢ and Σ wᵢ tᵢ over the samples after tⱼ, of the weights of each coefficient.
+    const P: usize = COEFFICIENTS - SHAKEN;
     let (mut weights, mut moments, mut squares) = ([0.0; P], [0.0; P], [0.0; P]);
     let mut next = times.len();
     for j in (begin + 1..until).rev() {
         let time = force.times[j];
         while next > 0 && times[next - 1] > time {
             next -= 1;
-            let row = row(times[next]);
             for i in 0..P {
-                let weight = sum(&fit.inverse[i], &row);
+                let weight = sum(&fit.inverse[SHAKEN + i], &rows[next]);
                 weights[i] += weight;
                 moments[i] += weight * (times[next] - first);
             }

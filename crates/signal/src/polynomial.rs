@@ -1,10 +1,15 @@
 //! Least-squares polynomials over short stretches of a signal.
 
+use std::ops::Range;
+
 /// Highest order that the routines of this module take.
 pub const MAX_ORDER: usize = 4;
 
 /// Intervals that differ by less than this part are equal: rounding of printed times.
 const EVEN_SPACING: f64 = 1e-6;
+
+/// Places of a window that are summed up together.
+const BLOCK: usize = 8;
 
 type Square = [[f64; MAX_ORDER + 1]; MAX_ORDER + 1];
 
@@ -33,8 +38,26 @@ pub fn fit_polynomial(
     origin: f64,
     order: usize,
 ) -> Option<PolynomialFit> {
+    // Compiled for each order: the loops over its terms are short.
+    match order {
+        0 => fit_order::<0>(times, values, origin),
+        1 => fit_order::<1>(times, values, origin),
+        2 => fit_order::<2>(times, values, origin),
+        3 => fit_order::<3>(times, values, origin),
+        MAX_ORDER => fit_order::<MAX_ORDER>(times, values, origin),
+        _ => None,
+    }
+}
+
+fn fit_order<const ORDER: usize>(
+    times: &[f64],
+    values: &[f64],
+    origin: f64,
+) -> Option<PolynomialFit> {
+    let order = ORDER;
     let scale = largest_distance(times, origin)?;
     let inverse = inverse_normal_matrix(times, origin, scale, order)?;
+    let per_scale = scale.recip();
 
     // Right-hand side about a reference value, to keep small signals on large offsets.
     let reference = values[0];
@@ -43,7 +66,7 @@ pub fn fit_polynomial(
         let mut power = value - reference;
         for moment in moments.iter_mut().take(order + 1) {
             *moment += power;
-            power *= (time - origin) / scale;
+            power *= (time - origin) * per_scale;
         }
     }
     let mut coefficients = [0.0; MAX_ORDER + 1];
@@ -56,7 +79,7 @@ pub fn fit_polynomial(
         .iter()
         .zip(values)
         .map(|(time, value)| {
-            let u = (time - origin) / scale;
+            let u = (time - origin) * per_scale;
             let fitted = (0..=order)
                 .rev()
                 .fold(0.0, |sum, i| sum * u + coefficients[i]);
@@ -115,34 +138,74 @@ pub fn local_polynomial(
         return None;
     }
     let half = window / 2;
-    let even = evenly_spaced(times);
-    let centre = even.then(|| weights(&times[..window], times[half], order, derivative));
+    let wanted = (order, derivative);
     let mut filtered = Vec::with_capacity(n);
-    for i in 0..n {
-        let first = i.saturating_sub(half).min(n - window);
-        let span = first..first + window;
-        let interior = i >= half && i + half < n;
-        let own;
-        let weights = match &centre {
-            Some(weights) if interior => weights.as_ref()?,
-            _ => {
-                own = weights_at(times, span.clone(), i, order, derivative)?;
-                &own
-            }
-        };
-        let reference = values[i];
-        let sum: f64 = weights
-            .iter()
-            .zip(&values[span])
-            .map(|(w, value)| w * (value - reference))
-            .sum();
-        filtered.push(if derivative == 0 {
-            sum + reference
-        } else {
-            sum
-        });
+    filtered.extend(near_end(times, values, (0..window, 0..half), wanted)?);
+    if evenly_spaced(times) {
+        let weights = weights(&times[..window], times[half], order, derivative)?;
+        slide(&weights, values, derivative == 0, &mut filtered);
+    } else {
+        for first in 0..=n - window {
+            let span = first..first + window;
+            let weights = weights(&times[span.clone()], times[first + half], order, derivative)?;
+            slide(&weights, &values[span], derivative == 0, &mut filtered);
+        }
     }
+    filtered.extend(near_end(
+        times,
+        values,
+        (n - window..n, n - half..n),
+        wanted,
+    )?);
     Some(filtered)
+}
+
+/// Derivatives, at some samples near an end, of the polynomial through a span of samples.
+fn near_end(
+    times: &[f64],
+    values: &[f64],
+    (span, at): (Range<usize>, Range<usize>),
+    (order, derivative): (usize, usize),
+) -> Option<Vec<f64>> {
+    let origin = times[span.start + span.len() / 2];
+    let fit = fit_polynomial(&times[span.clone()], &values[span], origin, order)?;
+    let of = |t: &f64| {
+        // Horner, from the highest term: each is divided by what its power brings.
+        let terms = (derivative..=order).rev();
+        terms.fold(0.0, |sum, i| {
+            let power = (i - derivative + 1) as f64;
+            fit.derivatives[i] + sum * (t - origin) / power
+        })
+    };
+    Some(times[at].iter().map(of).collect())
+}
+
+/// Sums of weighted samples in a window that slides along them.
+///
+/// * `level`: whether the weights give a value, not a derivative
+fn slide(weights: &[f64], values: &[f64], level: bool, out: &mut Vec<f64>) {
+    let half = weights.len() / 2;
+    let places = values.len() + 1 - weights.len();
+    let mut at = 0;
+    while at < places {
+        // Several places at once: their sums do not wait for each other.
+        let count = if places - at < BLOCK { 1 } else { BLOCK };
+        let middle = &values[at + half..];
+        let mut sums = [0.0; BLOCK];
+        if let (BLOCK, Some(middle)) = (count, middle.first_chunk::<BLOCK>()) {
+            for (weight, own) in weights.iter().zip(values[at..].windows(BLOCK)) {
+                for j in 0..BLOCK {
+                    sums[j] += weight * (own[j] - middle[j]);
+                }
+            }
+        } else {
+            let pairs = weights.iter().zip(&values[at..]);
+            sums[0] = pairs.map(|(weight, own)| weight * (own - middle[0])).sum();
+        }
+        let sums = sums.iter().zip(middle).take(count);
+        out.extend(sums.map(|(sum, middle)| if level { sum + middle } else { *sum }));
+        at += count;
+    }
 }
 
 /// True if all intervals are equal but for rounding.
@@ -156,16 +219,6 @@ pub fn evenly_spaced(times: &[f64]) -> bool {
         ((pair[1] - pair[0]) - mean).abs()
             <= EVEN_SPACING * mean + f64::EPSILON * 4.0 * pair[1].abs()
     })
-}
-
-fn weights_at(
-    times: &[f64],
-    span: std::ops::Range<usize>,
-    i: usize,
-    order: usize,
-    derivative: usize,
-) -> Option<Vec<f64>> {
-    weights(&times[span], times[i], order, derivative)
 }
 
 /// Weights that turn samples at `times` into a derivative at `origin`.
@@ -194,13 +247,15 @@ fn largest_distance(times: &[f64], origin: f64) -> Option<f64> {
 }
 
 /// (AᵀA)⁻¹ of the powers of (t − origin)/scale.
+#[inline(always)]
 fn inverse_normal_matrix(times: &[f64], origin: f64, scale: f64, order: usize) -> Option<Square> {
     if order > MAX_ORDER || times.len() <= order {
         return None;
     }
     let mut sums = [0.0; 2 * MAX_ORDER + 1];
+    let per_scale = scale.recip();
     for time in times {
-        let u = (time - origin) / scale;
+        let u = (time - origin) * per_scale;
         let mut power = 1.0;
         for sum in sums.iter_mut().take(2 * order + 1) {
             *sum += power;

@@ -3,7 +3,7 @@
 use crate::finding::Finding;
 use crate::noise::estimate::median;
 use crate::track::Track;
-use crate::trigger::scale::white_noise;
+use crate::trigger::scale::{largest, white_noise};
 
 /// A spike departs from its neighbours by this many standard deviations of the noise; 1.
 const CLEAR: f64 = 10.0;
@@ -58,8 +58,7 @@ pub fn spikes(values: &[f64], quantum: f64) -> Vec<(usize, f64)> {
     if n < 2 * AROUND {
         return Vec::new();
     }
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = (-largest(values, |v| -v), largest(values, |v| v));
     let least = (CLEAR * white_noise(values))
         .max(STEPS * quantum)
         .max(SMALL * (high - low));

@@ -5,7 +5,7 @@
 use crate::error::Error;
 use crate::finding::Finding;
 use crate::linear_fit::{LinearFit, linear_fit, sum};
-use crate::noise::estimate::median;
+use crate::noise::estimate::{median, median_of};
 use crate::track::Track;
 use crate::trigger::{Baseline, ContactChoice, ContactWindow, Contacts, TriggerOptions};
 use std::f64::consts::TAU;
@@ -60,9 +60,8 @@ impl Shape {
         let Self::Hum(frequency) = self else {
             return true;
         };
-        let intervals: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
-        let interval = median(&intervals).unwrap_or(span);
-        span * frequency >= PERIODS && interval * frequency * MEANS_IN_PERIOD <= 1.0
+        let interval = || median_of(times.windows(2).map(|t| t[1] - t[0])).unwrap_or(span);
+        span * frequency >= PERIODS && interval() * frequency * MEANS_IN_PERIOD <= 1.0
     }
 
     /// Its functions at a time from the middle of `span`; those it lacks are 0.
@@ -270,12 +269,7 @@ fn first_guess(track: &Track, forced: bool) -> Option<Zero> {
     let blocks: Vec<Range<usize>> = (0..n / block).map(|i| i * block..(i + 1) * block).collect();
     let (times, values) = block_means(&track.times, &track.values, &blocks);
     let middle = median(&values)?;
-    let constant = median(
-        &values
-            .iter()
-            .map(|v| (v - middle).abs())
-            .collect::<Vec<_>>(),
-    )?;
+    let constant = median_of(values.iter().map(|v| (v - middle).abs()))?;
     let ends = ((ENDS * values.len() as f64) as usize).max(1);
     let span = times.last()? - times.first()?;
     let mut best: Option<(f64, Zero)> = None;

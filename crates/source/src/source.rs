@@ -6,6 +6,9 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Files up to this length are read at once: it costs less than looking at their parts; bytes.
+const SMALL: u64 = 1 << 18;
+
 /// The bytes of a file, which threads can read at once.
 #[derive(Debug)]
 pub struct Source {
@@ -50,12 +53,16 @@ impl Source {
                 advice: "name a file in it".to_owned(),
             });
         }
-        Ok(Self {
+        let whole = Self {
             path: path.to_path_buf(),
             start: 0,
             length: metadata.len(),
             bytes: Bytes::File(Arc::new(file)),
-        })
+        };
+        match whole.length <= SMALL {
+            true => Ok(Self::of_bytes(path, whole.head(SMALL)?.into())),
+            false => Ok(whole),
+        }
     }
 
     /// Wraps bytes in memory, with a name for messages.
@@ -129,6 +136,10 @@ impl Source {
     pub fn bytes_at(&self, offset: u64, count: u64) -> Result<Vec<u8>, Error> {
         if count > self.length.saturating_sub(offset) {
             return Err(self.truncated(offset, "the data here", count));
+        }
+        if let Bytes::Memory(bytes) = &self.bytes {
+            let start = (self.start + offset) as usize;
+            return Ok(bytes[start..start + count as usize].to_vec());
         }
         let mut buffer = vec![0; count as usize];
         self.read_at(offset, &mut buffer)?;

@@ -126,11 +126,11 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        9,
+        10,
         [
-            "9b20d6a79a4eb026",
+            "add718a00caeb5eb",
             "e6be9b409addacb1",
-            "91551cac97612078",
+            "0d9a7fd3ea4b6a51",
             "362e0649b943bd49",
             "3e453baf43c8c589",
             "14c37f9ceb43806e",

@@ -232,6 +232,24 @@ fn channel_of<'a>(
         }
         Clock::Uniform { start, interval } => start - plan.delay + row as f64 * interval,
     };
+    let scaled = |cell: f64| plan.scale * (cell - plan.offset);
+    let all = |cells: &[f64]| cells.iter().all(|cell| cell.is_finite());
+    if let Clock::Uniform { start, interval } = source.clock
+        && !cells.is_empty()
+        && all(cells)
+        && all(other)
+    {
+        let channel = Channel {
+            name: name.clone(),
+            quantity: plan.quantity,
+            times: Times::Uniform {
+                start: start - plan.delay,
+                interval,
+            },
+            samples: cells.iter().map(|cell| scaled(*cell)).collect(),
+        };
+        return Ok((channel, None));
+    }
     let (mut samples, mut listed, mut lost) = (Vec::new(), Vec::new(), Vec::new());
     for (row, &cell) in cells.iter().enumerate() {
         let time_lost = times.get(row).is_some_and(|time| dirty(*time));
@@ -255,7 +273,7 @@ fn channel_of<'a>(
             }));
         }
         listed.push(time);
-        samples.push(plan.scale * (cell - plan.offset));
+        samples.push(scaled(cell));
     }
     if samples.is_empty() {
         return Err(Error::from(CampaignError::ColumnBlank {

@@ -245,3 +245,13 @@ pub struct CampaignOutcome {
     /// What a reader of the whole must know.
     pub findings: Vec<FindingOutcome>,
 }
+
+impl CampaignOutcome {
+    /// The outcome as indented JSON.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn json(&self) -> serde_json::Result<String> {
+        serde_json::to_string_pretty(self)
+    }
+}

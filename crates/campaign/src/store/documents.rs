@@ -1,7 +1,7 @@
 //! Results of campaigns that fit no impacts, as documents in results.sqlite.
 
 use crate::store::error::StoreError;
-use crate::store::file::{open_existing, store_error};
+use crate::store::file::{execute, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Row, Transaction, params};
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -110,7 +110,8 @@ pub(crate) fn insert_document_of_run(
     record: &DocumentRecord,
 ) -> rusqlite::Result<()> {
     insert_document(transaction, record)?;
-    transaction.execute(
+    execute(
+        transaction,
         "INSERT INTO run_documents (run, position, key) VALUES (?1, ?2, ?3)",
         params![run, position as i64, record.key],
     )?;
@@ -123,7 +124,8 @@ pub(crate) fn insert_document(
     record: &DocumentRecord,
 ) -> rusqlite::Result<()> {
     let sha256 = document_digest(&record.key, &record.document);
-    let added = transaction.execute(
+    let added = execute(
+        transaction,
         "INSERT OR IGNORE INTO documents (key, kind, item, specimen, file, document, sha256) \
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
         params![
@@ -145,7 +147,8 @@ pub(crate) fn insert_document(
         mend_document(transaction, "documents", document)?;
     } else {
         for (place, value) in record.values.iter().enumerate() {
-            transaction.execute(
+            execute(
+                transaction,
                 "INSERT INTO document_values (key, position, name, value, sd, unit) \
                  VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
                 params![

@@ -1,7 +1,7 @@
 //! The file results.sqlite: whose it is, which version, whether it is sound.
 
 use crate::store::error::StoreError;
-use rusqlite::{Connection, ErrorCode, OpenFlags, Transaction};
+use rusqlite::{Connection, ErrorCode, OpenFlags, Params, Transaction};
 use std::path::Path;
 use std::time::Duration;
 use windfall_files::error::Error;
@@ -55,6 +55,15 @@ pub(crate) fn open_existing(path: &Path) -> Result<Option<Connection>, Error> {
     }
     check_integrity(&connection, &path)?;
     Ok(Some(connection))
+}
+
+/// Executes a statement that is prepared the first time only.
+pub(crate) fn execute(
+    connection: &Connection,
+    statement: &str,
+    values: impl Params,
+) -> rusqlite::Result<usize> {
+    connection.prepare_cached(statement)?.execute(values)
 }
 
 fn check_integrity(connection: &Connection, path: &Path) -> Result<(), Error> {

@@ -11,7 +11,7 @@ use crate::store::documents::{
     DocumentRecord, document_digest, document_keys, find_documents, insert_document,
     insert_document_of_run, mend_document,
 };
-use crate::store::file::{PATIENCE, create_schema, open_existing, store_error};
+use crate::store::file::{PATIENCE, create_schema, execute, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use smol_str::SmolStr;
 use std::path::Path;
@@ -152,20 +152,23 @@ fn write_into(path: &Path, fill: &Fill) -> Result<(), Error> {
 }
 
 fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()> {
-    transaction.execute(
+    execute(
+        transaction,
         "INSERT INTO runs (time, windfall, options) VALUES (?1, ?2, ?3)",
         params![run.time, run.windfall, run.options],
     )?;
     let id = transaction.last_insert_rowid();
     for (path, sha256) in &run.inputs {
-        transaction.execute(
+        execute(
+            transaction,
             "INSERT OR IGNORE INTO inputs (run, path, sha256) VALUES (?1, ?2, ?3)",
             params![id, path, sha256],
         )?;
     }
     for (position, (key, result)) in run.results.iter().enumerate() {
         insert_result(transaction, key, result)?;
-        transaction.execute(
+        execute(
+            transaction,
             "INSERT INTO run_results (run, position, key) VALUES (?1, ?2, ?3)",
             params![id, position as i64, key],
         )?;
@@ -174,7 +177,8 @@ fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()
         insert_document_of_run(transaction, id, position, document)?;
     }
     for (position, failure) in run.failures.iter().enumerate() {
-        transaction.execute(
+        execute(
+            transaction,
             "INSERT INTO failures (run, position, impact, specimen, file, law, message) \
              VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
             params![
@@ -200,7 +204,8 @@ fn insert_result(
     let document = serde_json::to_string(result)
         .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
     let sha256 = document_digest(key, &document);
-    let added = transaction.execute(
+    let added = execute(
+        transaction,
         "INSERT OR IGNORE INTO results \
          (key, impact, specimen, file, law, cost, samples, converged, document, sha256) \
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
@@ -221,7 +226,8 @@ fn insert_result(
         return mend_document(transaction, "results", (key, &document, &sha256));
     }
     for (position, (name, estimate)) in result.parameters.0.iter().enumerate() {
-        transaction.execute(
+        execute(
+            transaction,
             "INSERT INTO parameters (key, position, name, value, sd, low, high, unit) \
              VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
             params![
@@ -238,13 +244,15 @@ fn insert_result(
     }
     for (name, value) in &result.derived.0 {
         let from = result.derived_from.get(name).map_or("", SmolStr::as_str);
-        transaction.execute(
+        execute(
+            transaction,
             "INSERT INTO derived (key, name, value, value_from) VALUES (?1, ?2, ?3, ?4)",
             params![key, name.as_str(), value, from],
         )?;
     }
     for (position, finding) in result.findings.iter().enumerate() {
-        transaction.execute(
+        execute(
+            transaction,
             "INSERT INTO findings (key, position, code, message) VALUES (?1, ?2, ?3, ?4)",
             params![key, position as i64, finding.code, finding.message],
         )?;

@@ -106,7 +106,11 @@ fn stacked(
     let (mut at, mut line, mut rows) = (mark, 0, 0);
     for index in 0..stretches(&lines) {
         let bytes = stretch(source, &lines, index)?;
-        for text in bytes.split_inclusive(|byte| *byte == lines.newline) {
+        let mut rest = &bytes[..];
+        while !rest.is_empty() {
+            let end = memchr::memchr(lines.newline, rest).map_or(rest.len(), |end| end + 1);
+            let text;
+            (text, rest) = rest.split_at(end);
             match kind(text, &missing, options.comment.as_deref()) {
                 Line::Blank => {}
                 Line::Row => {
@@ -143,18 +147,17 @@ fn stacked(
 }
 
 fn kind(line: &[u8], missing: &MissingWords, comment: Option<&str>) -> Line {
+    // Most lines begin with a digit, which begins no comment of ours.
+    if comment.is_none() && line.first().is_some_and(u8::is_ascii_digit) {
+        return Line::Row;
+    }
     let separator = |byte: &u8| b" \t,;|\"\r\n".contains(byte);
     let Some(first) = line.iter().position(|byte| !separator(byte)) else {
         return Line::Blank;
     };
     let text = &line[first..];
-    let comments = ["#", "%", "//"]
-        .iter()
-        .any(|mark| text.starts_with(mark.as_bytes()));
-    if match comment {
-        Some(mark) => text.starts_with(mark.as_bytes()),
-        None => comments,
-    } {
+    let begins = |mark: &str| text.starts_with(mark.as_bytes());
+    if comment.map_or_else(|| ["#", "%", "//"].into_iter().any(begins), begins) {
         return Line::Blank;
     }
     let unsigned = text.trim_ascii_start();

@@ -175,15 +175,23 @@ fn best_candidate<'a>(
         .into_iter()
         .filter(|separator| options.separator.is_none_or(|wanted| wanted == *separator))
         .chain(options.separator.filter(|s| !SEPARATORS.contains(s)));
-    let mut divided: Vec<Cells> = separators.map(|own| Cells::new(lines, own)).collect();
+    let occurs = |own: Separator| match own {
+        Separator::Mark(mark) => lines.iter().any(|line| line.as_bytes().contains(&mark)),
+        Separator::Blanks => true,
+    };
     // Marks that divide no line all leave the same cells.
     let mut undivided = false;
-    divided.retain(|cells| {
-        let same = cells.all.len() == lines.len() && cells.separator != Separator::Blanks;
+    let divided = separators.filter_map(|own| {
+        if undivided && !occurs(own) {
+            return None;
+        }
+        let cells = Cells::new(lines, own);
+        let same = cells.all.len() == lines.len() && own != Separator::Blanks;
         let also = same && undivided;
-        undivided |= same && !DECIMALS.map(Separator::Mark).contains(&cells.separator);
-        !also
+        undivided |= same && !DECIMALS.map(Separator::Mark).contains(&own);
+        (!also).then_some(cells)
     });
+    let mut divided: Vec<Cells> = divided.collect();
 
     // A score is at most the number of cells: where there are most of them, the others need
     // no closer look.
@@ -235,7 +243,7 @@ fn best_candidate<'a>(
 fn may_be_decimal(cells: &Cells, data: &[usize], mark: u8) -> bool {
     let quoted = |&at: &usize| {
         let cells = cells.line(at);
-        cells.iter().any(|cell| cell.contains(char::from(mark)))
+        cells.iter().any(|cell| cell.as_bytes().contains(&mark))
     };
     cells.separator != Separator::Mark(mark) || data.iter().any(quoted)
 }

@@ -45,7 +45,10 @@ impl Encoding {
     /// Decodes bytes; invalid sequences become "\u{fffd}".
     pub fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         match self {
-            Self::Utf8 => String::from_utf8_lossy(bytes),
+            Self::Utf8 => match std::str::from_utf8(bytes) {
+                Ok(text) => Cow::Borrowed(text),
+                Err(_) => String::from_utf8_lossy(bytes),
+            },
             Self::Windows1252 => match std::str::from_utf8(bytes) {
                 Ok(text) if bytes.is_ascii() => Cow::Borrowed(text),
                 _ => bytes.iter().map(|&byte| windows_1252(byte)).collect(),
@@ -81,14 +84,12 @@ pub fn tell_encoding(head: &[u8]) -> (Encoding, usize) {
     if head.starts_with(b"\xfe\xff") {
         return (Encoding::Utf16Be, 2);
     }
+    if head.is_ascii() && !head.contains(&0) {
+        return (Encoding::Utf8, 0);
+    }
     // Tables are nearly all ASCII, so in UTF-16 every other byte is zero.
-    let zeros = |odd: usize| {
-        head.iter()
-            .skip(odd)
-            .step_by(2)
-            .filter(|b| **b == 0)
-            .count()
-    };
+    let every_other = |odd: usize| head.iter().skip(odd).step_by(2);
+    let zeros = |odd: usize| every_other(odd).filter(|b| **b == 0).count();
     let half = head.len() / 2;
     if half > 1 && zeros(1) * 10 > half * 9 && zeros(0) == 0 {
         return (Encoding::Utf16Le, 0);

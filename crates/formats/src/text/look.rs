@@ -2,7 +2,7 @@
 
 use crate::text::date::{Moment, moment};
 use crate::text::missing::MissingWords;
-use crate::text::number::{Cell, Marks, bare, cell};
+use crate::text::number::{Cell, Marks, bare, cell, leading_number};
 use crate::text::rows::Separator;
 
 /// Candidate thousands separators.
@@ -27,6 +27,11 @@ pub struct Notation<'a> {
 
 impl Notation<'_> {
     pub fn look(self, text: &str) -> Look {
+        // Most cells are plain numbers.
+        let plain = leading_number(text.as_bytes(), self.marks.decimal);
+        if plain.is_some_and(|(_, used)| used == text.len()) {
+            return Look::Number;
+        }
         let text = bare(text);
         if text.is_empty() {
             return Look::Blank;

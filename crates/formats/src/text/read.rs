@@ -105,9 +105,7 @@ impl TextReader {
             headed,
         })
     }
-}
 
-impl TextReader {
     /// Number of columns of the file, also of those that are left out.
     pub(crate) fn columns(&self) -> usize {
         self.table.names.len()
@@ -128,9 +126,11 @@ fn check_text(source: &Source, text: &str) -> Result<(), Error> {
     let control = |c: &char| c.is_control() && !c.is_whitespace();
     let (all, strange) = match text.is_ascii() {
         true => {
-            let controls = text.bytes().map(|b| usize::from(b < 32 || b == 127));
-            let blanks = text.bytes().map(|b| usize::from((9..=13).contains(&b)));
-            (text.len(), controls.sum::<usize>() - blanks.sum::<usize>())
+            let strange = |b: &u8| u8::from((*b < 32 || *b == 127) && !(9..=13).contains(b));
+            // Counts of so few bytes fit into bytes.
+            let parts = text.as_bytes().chunks(255);
+            let counts = parts.map(|part| usize::from(part.iter().map(strange).sum::<u8>()));
+            (text.len(), counts.sum())
         }
         false => (text.chars().count(), text.chars().filter(control).count()),
     };

@@ -182,8 +182,8 @@ pub struct Estimator<'a, L, const N: usize, const W: usize, const P: usize> {
 
 impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimator<'a, L, N, W, P> {
     /// Problem of `law` (its parameters do not matter) with `free` parameters,
-    /// everything else as in `base`. At most `P` parameters, of which at most `W − 1`
-    /// move the motion.
+    /// everything else as in `base`. At most `P` parameters, of which at most the first
+    /// `W − 1` move the motion.
     pub fn new(
         law: L,
         setting: Setting,
@@ -192,6 +192,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         base: Values<N>,
     ) -> Self {
         debug_assert!(free.len() <= P);
+        debug_assert!(free.iter().skip(W - 1).all(|own| !own.target.needs_lane()));
         Self {
             setting,
             groups,
@@ -410,7 +411,16 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
 
     /// Residuals and derivatives of each sample at coordinates `u`.
     pub fn rows(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
-        let mut rows = Rows::default();
+        self.rows_of(u, P)
+    }
+
+    /// [`rows`](Self::rows) without the derivatives.
+    pub(crate) fn residuals(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
+        self.rows_of(u, 0)
+    }
+
+    fn rows_of(&self, u: &[f64; P], derivatives: usize) -> Option<(NormalEquations<P>, Rows)> {
+        let mut rows = Rows::of(self.groups, derivatives);
         let mut equations = evaluate(&self.model(u), self.groups, Some(&mut rows)).ok()?;
         self.add_priors(u, 1, &mut equations);
         Some((equations, rows))

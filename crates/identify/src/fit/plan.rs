@@ -10,7 +10,7 @@ use crate::fit::model::Sampling;
 use crate::fit::noise::{NoisePlan, noise_plan, series};
 use crate::fit::problem::{FitOptions, LawProblem, NoiseModel, Weighting};
 use crate::fit::regression::{RegressionEstimate, regress};
-use crate::fit::solve::{Limits, Solution, Start, solve};
+use crate::fit::solve::{Limits, Solution, Start, Wanted, solve};
 use crate::fit::starting_values::impact_scales;
 use crate::rig::kind::Rig;
 use crate::rig::motion::Motion;
@@ -158,17 +158,20 @@ impl Plan<'_> {
     /// Solves from the planned starts; then once more with the noise that the
     /// residuals show.
     pub(crate) fn solve(&mut self, rig: &Rig) -> Result<Solution, Error> {
-        let first = self.solve_once(rig)?;
         if !self.modelled() && self.intervals_wanted().is_none() {
-            return Ok(first);
+            return self.solve_once(rig);
         }
+        let first = match self.options.response.is_none() {
+            true => self.solve_planned(rig, Wanted::Residuals)?,
+            false => self.solve_once(rig)?,
+        };
         self.noise = self.noise_after(&first, rig)?;
         self.solve_again(&first, rig)
     }
 
     /// Solves from the planned starts with the noise as it is planned.
     pub(crate) fn solve_once(&mut self, rig: &Rig) -> Result<Solution, Error> {
-        let first = self.solve_with_mass(rig.effective_mass(), &self.starts)?;
+        let first = self.solve_planned(rig, Wanted::Covariance)?;
         match self.options.response.is_none() {
             true => Ok(first),
             false => self.settle(first, rig),
@@ -196,7 +199,9 @@ impl Plan<'_> {
             first.offset,
         ];
         let start = (first.law.clone(), motion);
-        let mut second = self.solve_from(&[start], self.intervals_wanted())?;
+        let wanted = self.intervals_wanted();
+        let wanted = wanted.map_or(Wanted::Covariance, Wanted::Intervals);
+        let mut second = self.solve_from(&[start], wanted)?;
         second.evaluations += first.evaluations;
         Ok(second)
     }
@@ -218,16 +223,11 @@ impl Plan<'_> {
         Ok(motion.rate)
     }
 
-    pub(crate) fn solve_with_mass(
-        &self,
-        mass: f64,
-        starts: &[Vec<f64>],
-    ) -> Result<Solution, Error> {
-        let velocity = self.features.velocity;
-        let starts = starts
-            .iter()
-            .map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
-        self.solve_from(&starts.collect::<Vec<_>>(), None)
+    fn solve_planned(&self, rig: &Rig, wanted: Wanted) -> Result<Solution, Error> {
+        let (velocity, mass) = (self.features.velocity, rig.effective_mass());
+        let starts = self.starts.iter();
+        let starts = starts.map(|law| (law.clone(), [velocity, mass, 0.0, 0.0]));
+        self.solve_from(&starts.collect::<Vec<_>>(), wanted)
     }
 
     fn intervals_wanted(&self) -> Option<IntervalPlan> {
@@ -268,11 +268,7 @@ impl Plan<'_> {
         }
     }
 
-    pub(crate) fn solve_from(
-        &self,
-        starts: &[Start],
-        intervals: Option<IntervalPlan>,
-    ) -> Result<Solution, Error> {
+    pub(crate) fn solve_from(&self, starts: &[Start], wanted: Wanted) -> Result<Solution, Error> {
         let description = self.problem.kind.describe();
         let no_start = Error::NoStart {
             law: description.name,
@@ -286,7 +282,7 @@ impl Plan<'_> {
                 false => series(self.impact, q).map_or(0.0, |s| s.zero_sd),
             }),
             instants: self.instants,
-            intervals,
+            wanted,
         };
         let law = self.problem.kind.with_parameters(&starts[0].0)?;
         let samples = (self.setting(), &self.noise.groups[..]);

@@ -8,7 +8,7 @@ use windfall_contact::laws::user::UserKind;
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::NormalEquations;
 use windfall_signal::impact::{Impact, Series};
-use windfall_signal::kinematics::{smoothing_window, value_at};
+use windfall_signal::kinematics::{Walk, smoothing_window};
 
 /// Parameters at most that a law is linear in.
 const TERMS: usize = 2;
@@ -80,7 +80,8 @@ pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
     let displacement = impact.displacement.as_ref()?;
     let half = smoothing_half(impact, displacement)?;
 
-    let slopes = LocalSlopes::of(displacement, half);
+    let mut slopes = LocalSlopes::of(displacement, half);
+    let mut places = Walk::along(&displacement.times, &displacement.values);
     // Keep to the contact: outside, the terms are zero and the force is noise.
     let mut equations = NormalEquations::<TERMS>::ZERO;
     let mut samples = 0;
@@ -88,7 +89,7 @@ pub fn regress(impact: &Impact, law: &Law) -> Option<Vec<RegressionEstimate>> {
         if time < impact.onset || time > impact.end {
             continue;
         }
-        let x = value_at(&displacement.times, &displacement.values, time);
+        let x = places.at(time);
         if x <= 0.0 {
             continue;
         }
@@ -113,13 +114,15 @@ fn smoothing_half(impact: &Impact, displacement: &Series) -> Option<usize> {
     (times.len() > 2 * half).then_some(half)
 }
 
-/// Slopes of the straight lines through the samples around any time; on even times also
+/// Slopes of the straight lines through the samples around times that rise; on even times also
 /// those of the local quadratic (Savitzky-Golay).
 struct LocalSlopes<'a> {
     times: &'a [f64],
     half: usize,
     /// Sums of t, x, t² and t x of the first 0, 1, … samples, about the middle one.
     sums: Vec<[f64; 4]>,
+    /// Samples before the last time.
+    centre: usize,
 }
 
 impl<'a> LocalSlopes<'a> {
@@ -138,13 +141,21 @@ impl<'a> LocalSlopes<'a> {
             }
             sums.push(sum);
         }
-        Self { times, half, sums }
+        Self {
+            times,
+            half,
+            sums,
+            centre: 0,
+        }
     }
 
-    fn at(&self, time: f64) -> f64 {
+    /// At `time`, which is no earlier than the one asked for before.
+    fn at(&mut self, time: f64) -> f64 {
         let width = 2 * self.half + 1;
-        let centre = self.times.partition_point(|t| *t < time);
-        let first = centre.saturating_sub(self.half);
+        while self.times.get(self.centre).is_some_and(|&t| t < time) {
+            self.centre += 1;
+        }
+        let first = self.centre.saturating_sub(self.half);
         let first = first.min(self.times.len() - width);
         let (before, after) = (&self.sums[first], &self.sums[first + width]);
         let [t1, x1, t2, tx] = std::array::from_fn(|i| after[i] - before[i]);
@@ -191,7 +202,7 @@ mod tests {
                 times,
                 ..Series::default()
             };
-            let slopes = LocalSlopes::of(&series, 20);
+            let mut slopes = LocalSlopes::of(&series, 20);
             for i in [20, 100, 379] {
                 let time = series.times[i];
                 let slope = 0.35 - 180.0 * (time - start);

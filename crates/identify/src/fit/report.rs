@@ -39,9 +39,10 @@ impl Plan<'_> {
     pub(crate) fn report(&self, solution: &Solution, rig: &Rig) -> Result<Fit, Error> {
         let law = self.problem.kind.with_parameters(&solution.law)?;
         let samples: usize = self.noise.groups.iter().map(sample_count).sum();
-        let mut estimates = self.estimates(solution, &law, samples);
+        let quantile = self.quantile(samples);
+        let mut estimates = self.estimates(solution, &law, quantile);
         let common = self.shifts_of_priors(solution, &estimates);
-        self.end_at_bounds(solution, &mut estimates, self.quantile(samples));
+        self.end_at_bounds(solution, &mut estimates, quantile);
         let law_count = self.problem.free_positions().count();
         let simulated = simulate_rig(&law, rig, solution.velocity, self.options.end)?;
         let mut fit = Fit {
@@ -55,7 +56,7 @@ impl Plan<'_> {
             evaluations: solution.evaluations,
             converged: solution.stop == Stop::Converged,
             quantities: self.quantity_fits(solution, simulated.contact_duration),
-            regression: self.regression_estimates(&law),
+            regression: self.regression_estimates(&law, quantile),
             simulated,
             velocity: solution.velocity,
             onset: self.impact.onset + solution.onset,
@@ -91,8 +92,7 @@ impl Plan<'_> {
         }
     }
 
-    fn estimates(&self, solution: &Solution, law: &Law, samples: usize) -> Vec<Estimate> {
-        let quantile = self.quantile(samples);
+    fn estimates(&self, solution: &Solution, law: &Law, quantile: f64) -> Vec<Estimate> {
         self.free
             .iter()
             .enumerate()
@@ -154,9 +154,8 @@ impl Plan<'_> {
         detail
     }
 
-    fn regression_estimates(&self, law: &Law) -> Vec<Estimate> {
+    fn regression_estimates(&self, law: &Law, quantile: f64) -> Vec<Estimate> {
         let described = self.problem.kind.describe().parameters;
-        let quantile = self.quantile(self.noise.groups.iter().map(sample_count).sum());
         self.regression
             .iter()
             .map(|r| Estimate {

@@ -25,6 +25,23 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// Room for the rows of all samples, with so many derivatives of each.
+    pub(crate) fn of(groups: &[SampleGroup], derivatives: usize) -> Self {
+        let room = |each: usize| -> Vec<[Vec<f64>; QUANTITIES]> {
+            let of = |group: &SampleGroup, q: usize| match group.values[q].is_empty() {
+                true => Vec::new(),
+                false => vec![0.0; group.len * each],
+            };
+            let all = groups.iter();
+            all.map(|group| std::array::from_fn(|q| of(group, q)))
+                .collect()
+        };
+        Self {
+            residuals: room(1),
+            jacobian: room(derivatives),
+        }
+    }
+
     /// Residuals over degrees of freedom, which all channels share.
     pub(crate) fn freedom_lost(&self, parameters: usize) -> f64 {
         let total: usize = self.residuals.iter().flatten().map(Vec::len).sum();
@@ -32,8 +49,7 @@ impl Rows {
     }
 }
 
-/// Normal equations of `model` against `groups`; with `rows`, residuals and
-/// derivatives of each sample too.
+/// Normal equations of `model` against `groups`; with `rows`, those that there is room for too.
 ///
 /// # Errors
 /// [`StepError`] when the motion cannot be integrated.
@@ -264,6 +280,7 @@ impl<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize> FourLanes
                 zero,
                 piece: PieceModel::new(model, self.segment, accelerated),
                 force: force && self.piece == Piece::Contact,
+                places: !rests && !accelerated,
                 group,
                 range,
                 stride: *stride,
@@ -281,6 +298,8 @@ struct Share<'a, L, R, const N: usize, const W: usize, const P: usize> {
     piece: PieceModel<'a, L, N, W, P>,
     /// Whether there is a force that matters.
     force: bool,
+    /// Whether there are displacements alone.
+    places: bool,
     group: &'a SampleGroup,
     /// Indices of the first and behind the last.
     range: (usize, usize),
@@ -313,9 +332,10 @@ where
         }
         let persistent = group.persistence.iter().any(|own| *own != 0.0);
         let simple = (stride > 1 || !persistent) && self.average.is_none() && rows.is_none();
-        match simple {
-            true => self.read_packs::<true>(tally, rows),
-            false => self.read_packs::<false>(tally, rows),
+        match (simple, self.places) {
+            (true, true) => self.read_packs::<true, true>(tally, rows),
+            (true, false) => self.read_packs::<true, false>(tally, rows),
+            (false, _) => self.read_packs::<false, false>(tally, rows),
         }
         if stride == 1 {
             tally.noise.end(group, self.range.0, self.range.1);
@@ -323,9 +343,9 @@ where
     }
 
     /// `SIMPLE` samples have noise that does not persist, are taken at their instant,
-    /// and nothing but sums is wanted.
+    /// and nothing but sums is wanted. `PLACES` are displacements alone.
     #[inline(always)]
-    fn read_packs<const SIMPLE: bool>(
+    fn read_packs<const SIMPLE: bool, const PLACES: bool>(
         &self,
         tally: &mut Tally<P>,
         rows: &mut Option<(&mut Rows, usize)>,
@@ -348,7 +368,10 @@ where
             // The roots of the next pack run beside what follows from this one.
             let next_times = load(&group.times, next.min(group.len));
             let next_place = piece.place(zero.with_plain(next_times));
-            let mut found = piece.at(place, self.force);
+            let mut found = match PLACES {
+                true => piece.place_at(place),
+                false => piece.at(place, self.force),
+            };
             if let (false, Some(average)) = (SIMPLE, self.average) {
                 piece.correct_onset(&mut found, times, average);
             }
@@ -359,9 +382,11 @@ where
             let pack = PackAt { at, count, counted };
             // Written out: an index known to the compiler keeps the model in registers.
             self.add::<0, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
-            self.add::<1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
-            self.add::<2, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
-            self.add::<3, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            if !PLACES {
+                self.add::<1, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+                self.add::<2, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+                self.add::<3, SIMPLE>(&found, pack, &mut sums, &mut tally.noise);
+            }
             if let (false, Some((rows, index))) = (SIMPLE, rows.as_mut()) {
                 store_rows(rows, *index, group, (at, count), &found.plain());
             }
@@ -431,21 +456,20 @@ fn store_rows<const P: usize>(
     (at, count): (usize, usize),
     found: &PackModel<Pack, P>,
 ) {
-    while rows.residuals.len() <= index {
-        rows.residuals.push(Default::default());
-        rows.jacobian.push(Default::default());
-    }
     for q in (0..QUANTITIES).filter(|&q| !group.values[q].is_empty()) {
         // By their index: pieces of the motion do not come in the order of time.
-        let residuals = &mut rows.residuals[index][q];
-        residuals.resize(group.len, 0.0);
-        let derivatives = &mut rows.jacobian[index][q];
-        derivatives.resize(group.len * P, 0.0);
-        for lane in 0..count {
-            let at = at + lane;
-            residuals[at] = found.values[q].0[lane] - group.values[q][at];
-            for (c, column) in found.jacobian[q].iter().enumerate() {
-                derivatives[at * P + c] = column.0[lane];
+        let measured = &group.values[q][at..at + count];
+        let residuals = &mut rows.residuals[index][q][at..at + count];
+        for (lane, (residual, measured)) in residuals.iter_mut().zip(measured).enumerate() {
+            *residual = found.values[q].0[lane] - measured;
+        }
+        let derivatives = rows.jacobian[index][q].get_mut(at * P..(at + count) * P);
+        let samples = derivatives
+            .into_iter()
+            .flat_map(|own| own.chunks_exact_mut(P));
+        for (lane, row) in samples.enumerate() {
+            for (to, column) in row.iter_mut().zip(&found.jacobian[q]) {
+                *to = column.0[lane];
             }
         }
     }

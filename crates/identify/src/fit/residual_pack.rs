@@ -30,7 +30,8 @@ pub(crate) struct PieceModel<'a, L, const N: usize, const W: usize, const P: usi
     inverse_width: f64,
     /// Dense output of displacement and rate.
     state: [&'a [f64; DENSE_COEFFICIENTS]; 2],
-    /// That of their derivatives by each column; zero where it is no lane's.
+    /// That of their derivatives by each column; zero where it is no lane's, as it is from
+    /// column W − 1 on.
     columns: [[&'a [f64; DENSE_COEFFICIENTS]; 2]; P],
     /// Derivatives of the law's parameters by each column, and which are not zero.
     parameters: [[f64; N]; P],
@@ -82,7 +83,7 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         let x = dense_at(self.state[0], sigma, rest);
         let v = dense_at(self.state[1], sigma, rest);
         let mut jacobian = [[zero; P]; QUANTITIES];
-        for c in 0..P {
+        for c in 0..P.min(W - 1) {
             jacobian[0][c] = dense_at(self.columns[c][0], sigma, rest);
             jacobian[1][c] = dense_at(self.columns[c][1], sigma, rest);
         }
@@ -122,6 +123,28 @@ impl<'a, L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>
         }
         PackModel {
             values: [x + self.model.offset, v, force.force, acceleration],
+            jacobian,
+        }
+    }
+
+    /// [`at`](Self::at) of samples of the displacement alone.
+    #[inline(always)]
+    pub(crate) fn place_at<R: Real>(&self, (sigma, rest): (R, R)) -> PackModel<R, P> {
+        let zero = sigma.constant(0.0);
+        let columns = &self.model.columns;
+        let x = dense_at(self.state[0], sigma, rest);
+        let v = dense_at(self.state[1], sigma, rest);
+        let mut jacobian = [[zero; P]; QUANTITIES];
+        for c in 0..P {
+            let later = zero.constant(-columns.onset[c]);
+            let column = match c < W - 1 {
+                true => dense_at(self.columns[c][0], sigma, rest),
+                false => zero,
+            };
+            jacobian[0][c] = v.mul_add(later, column) + columns.offset[c];
+        }
+        PackModel {
+            values: [x + self.model.offset, v, zero, zero],
             jacobian,
         }
     }

@@ -51,9 +51,9 @@ pub(crate) fn solved<'a>(
     let mut plan = plan(impact, rig, problem, options)?;
     let solution = plan.solve(rig)?;
     let mut fit = plan.report(&solution, rig)?;
-    let quantile = plan.quantile(fit.samples);
     for (quantity, sd) in options.bench.uncertain() {
         let asked = (impact, rig, problem, options);
+        let quantile = plan.quantile(fit.samples);
         widen(&mut fit, asked, (quantity, sd), quantile);
     }
     for finding in &mut fit.findings {

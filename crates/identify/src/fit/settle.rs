@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::fit::noise::NoisePlan;
 use crate::fit::plan::Plan;
 use crate::fit::response::{Motion, Shift};
-use crate::fit::solve::Solution;
+use crate::fit::solve::{Solution, Wanted};
 use crate::rig::kind::Rig;
 use crate::samples::Quantity;
 
@@ -163,7 +163,7 @@ impl Plan<'_> {
                 solution.onset,
                 solution.offset,
             ];
-            let next = self.solve_from(&[(solution.law.clone(), start)], None)?;
+            let next = self.solve_from(&[(solution.law.clone(), start)], Wanted::Covariance)?;
             let evaluations = solution.evaluations;
             let moved = Move::new(&place, &next);
             solution = next;

@@ -47,7 +47,7 @@ pub(crate) struct Solution {
     pub law: Vec<f64>,
     /// Values of the free parameters, in their order; SI.
     pub free: Vec<f64>,
-    /// Covariance of the free parameters; empty when it is singular.
+    /// Covariance of the free parameters; empty when it is singular or not wanted.
     pub covariance: Vec<Vec<f64>>,
     /// Inverse of half the second derivatives of the cost by the free parameters; empty when
     /// they are singular.
@@ -89,8 +89,19 @@ pub(crate) struct Limits {
     pub offsets: [f64; QUANTITIES],
     /// Whether to end at the minimum for instantaneous samples.
     pub instants: bool,
-    /// Intervals wanted; `None` while the noise is still being found.
-    pub intervals: Option<IntervalPlan>,
+    /// What is wanted beside the estimates.
+    pub wanted: Wanted,
+}
+
+/// What is wanted of a solution beside its estimates.
+#[derive(Clone, Debug)]
+pub(crate) enum Wanted {
+    /// Residuals, of which the noise is found; no covariance.
+    Residuals,
+    /// Their covariance too.
+    Covariance,
+    /// And other intervals than estimate ± deviation.
+    Intervals(IntervalPlan),
 }
 
 /// Solves from each start in turn until one converges inside the bounds, and
@@ -180,9 +191,9 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
         false => (minimum, 0),
     };
     evaluations += spent;
-    let mut solution = complete(law_count, &estimator, &minimum, &limits.offsets)?;
+    let mut solution = complete(law_count, &estimator, &minimum, limits)?;
     solution.evaluations += evaluations;
-    if let Some(plan) = &limits.intervals
+    if let Wanted::Intervals(plan) = &limits.wanted
         && minimum.stop == Stop::Converged
     {
         solution.intervals = intervals(&estimator, &smooth, plan, &options(free, limits));
@@ -346,9 +357,12 @@ fn complete<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     law_count: usize,
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
-    offsets: &[f64; QUANTITIES],
+    limits: &Limits,
 ) -> Option<Solution> {
-    let (equations, rows) = estimator.rows(&minimum.parameters)?;
+    let (equations, rows) = match limits.wanted {
+        Wanted::Residuals => estimator.residuals(&minimum.parameters),
+        Wanted::Covariance | Wanted::Intervals(_) => estimator.rows(&minimum.parameters),
+    }?;
     let values = estimator.values(&minimum.parameters);
     let free = estimator.free();
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
@@ -360,10 +374,15 @@ fn complete<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
         };
         matrix.map_or(vec![], |c| (0..count).map(|i| row(&c, i)).collect())
     };
-    let mut priors = NormalEquations::ZERO;
-    estimator.add_priors(&minimum.parameters, 1, &mut priors);
-    let samples = (&rows, estimator.groups());
-    let covariance = covariance(&equations, samples, offsets, &priors, count);
+    let covariance = match limits.wanted {
+        Wanted::Residuals => None,
+        Wanted::Covariance | Wanted::Intervals(_) => {
+            let mut priors = NormalEquations::ZERO;
+            estimator.add_priors(&minimum.parameters, 1, &mut priors);
+            let samples = (&rows, estimator.groups());
+            covariance(&equations, samples, &limits.offsets, &priors, count)
+        }
+    };
     Some(Solution {
         law: values.law[..law_count].to_vec(),
         inverse: in_si(equations.inverse(count)),

@@ -178,15 +178,13 @@ fn mean_square(values: &[f64]) -> f64 {
 /// 15:517.
 pub fn inflation(residuals: &[f64]) -> f64 {
     let n = residuals.len();
-    let power: f64 = residuals.iter().map(|r| r * r).sum();
+    let power = sum_of_products(residuals, residuals);
     let limit = (LARGEST_LAG_FRACTION * n as f64) as usize;
     if power <= 0.0 || limit < 2 {
         return 1.0;
     }
-    let correlation = |lag: usize| -> f64 {
-        let pairs = residuals[..n - lag].iter().zip(&residuals[lag..]);
-        pairs.map(|(a, b)| a * b).sum::<f64>() / power
-    };
+    let correlation =
+        |lag: usize| -> f64 { sum_of_products(&residuals[..n - lag], &residuals[lag..]) / power };
     let significant = SIGNIFICANT * ((n as f64).log10() / n as f64).sqrt();
     let mut correlations = Vec::new();
     let (mut last, mut quiet) = (0, 0);
@@ -212,6 +210,21 @@ pub fn inflation(residuals: &[f64]) -> f64 {
     sum.max(SMALLEST_INFLATION)
 }
 
+/// Σ aᵢ bᵢ, in several sums that do not wait for each other.
+fn sum_of_products(a: &[f64], b: &[f64]) -> f64 {
+    const SUMS: usize = 8;
+    let (a, b) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; SUMS];
+    for (a, b) in a.zip(b) {
+        for i in 0..SUMS {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
 /// Adds `variance` Σ w J Jᵀ of one channel, whitened, less what its zero leaves
 /// unsaid.
 fn add_meat<const P: usize>(
@@ -222,15 +235,20 @@ fn add_meat<const P: usize>(
     variance: f64,
     offset: f64,
 ) {
-    let (mut total, mut square) = ([0.0; P], 0.0);
+    let (mut total, mut square, mut sums) = ([0.0; P], 0.0, [[0.0; P]; P]);
     let rows = whitened_derivatives::<P>(group, quantity, jacobian);
     for (row, own) in rows.iter().zip(whitened_zero(group, quantity)) {
         square += own * own;
         for p in 0..P {
             total[p] += own * row[p];
             for q in 0..P {
-                meat[p][q] += variance * row[p] * row[q];
+                sums[p][q] += row[p] * row[q];
             }
+        }
+    }
+    for p in 0..P {
+        for q in 0..P {
+            meat[p][q] += variance * sums[p][q];
         }
     }
     for p in 0..P {

@@ -9,7 +9,7 @@ use crate::rig::motion::Motion;
 use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
-use windfall_numerics::ode::step::Tolerance;
+use windfall_numerics::ode::step::{StepError, Tolerance};
 use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::root::bracketed_root;
 pub use windfall_signal::instrument::Trajectory;
@@ -85,7 +85,7 @@ pub fn simulate_rig(
     let mut duration = FIRST_DURATION;
     for _ in 0..LARGEST_DOUBLINGS {
         let mut summary = ImpactSummary::default();
-        let separation = follow(&event, 0.0, duration, &mut |segment, piece| {
+        let separation = follow_fast(&event, 0.0, duration, &mut |segment, piece| {
             if piece == Piece::Contact {
                 tally(&event, segment, &mut summary);
             }
@@ -125,7 +125,7 @@ pub fn trajectory(
         force: zeros.clone(),
         acceleration: zeros,
     };
-    follow(&event, first.min(0.0), last, &mut |segment, piece| {
+    follow_fast(&event, first.min(0.0), last, &mut |segment, piece| {
         read(&event, segment, piece, last, &mut out);
     })?;
     Ok(out)
@@ -162,6 +162,38 @@ fn event(law: &Law, rig: &Rig, velocity: f64, end: EndRule) -> Result<Event, Err
     })
 }
 
+/// [`follow`], compiled for the machine's vector instructions: without them each fused
+/// multiplication and addition is a call.
+fn follow_fast(
+    event: &Event,
+    before: f64,
+    after: f64,
+    sink: &mut impl FnMut(&Segment<1>, Piece),
+) -> Result<Option<Separation>, StepError> {
+    pulp::Arch::new().dispatch(Follow {
+        event,
+        before,
+        after,
+        sink,
+    })
+}
+
+struct Follow<'a, F> {
+    event: &'a Event,
+    before: f64,
+    after: f64,
+    sink: &'a mut F,
+}
+
+impl<F: FnMut(&Segment<1>, Piece)> pulp::WithSimd for Follow<'_, F> {
+    type Output = Result<Option<Separation>, StepError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
+        follow(self.event, self.before, self.after, self.sink)
+    }
+}
+
 fn complete(
     found: ImpactSummary,
     separation: &Separation,
@@ -191,6 +223,7 @@ struct State {
     force_rate: f64,
 }
 
+#[inline(always)]
 fn state_at(event: &Event, segment: &Segment<1>, sigma: f64) -> State {
     let [x, v] = segment.step.at(sigma).map(|lanes| lanes.0[0]);
     let law = event
@@ -214,13 +247,16 @@ fn state_at(event: &Event, segment: &Segment<1>, sigma: f64) -> State {
 }
 
 /// Adds the peaks and the impulse of a piece of the contact.
+#[inline(always)]
 fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
     let end = sigma_of(segment, segment.to);
     let state = |sigma: f64| state_at(event, segment, sigma);
 
+    let grid: [State; SEARCH_POINTS + 1] = std::array::from_fn(|i| state(point(end, i)));
+
     // The force's maximum may be at first touch, where some laws jump.
-    let force = highest(
-        end,
+    let force = highest_on(
+        (end, grid.map(|state| state.force)),
         |sigma| state(sigma).force,
         |sigma| state(sigma).force_rate,
     );
@@ -229,7 +265,12 @@ fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
         summary.peak_force = peak.force;
         summary.time_of_peak_force = peak.time;
     }
-    let deepest = state(highest(end, |sigma| state(sigma).x, |sigma| state(sigma).v));
+    let deepest = highest_on(
+        (end, grid.map(|state| state.x)),
+        |sigma| state(sigma).x,
+        |sigma| state(sigma).v,
+    );
+    let deepest = state(deepest);
     if deepest.x > summary.max_displacement {
         summary.max_displacement = deepest.x;
         summary.time_of_max_displacement = deepest.time;
@@ -246,37 +287,55 @@ fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
     }
 }
 
+#[inline(always)]
 fn sigma_of(segment: &Segment<1>, time: f64) -> f64 {
     (scaled_time(time, segment.power) - segment.step.start) / segment.step.width
+}
+
+/// A point of the grid over `[0, end]` on which a maximum is searched.
+#[inline(always)]
+fn point(end: f64, i: usize) -> f64 {
+    end * i as f64 / SEARCH_POINTS as f64
 }
 
 /// Where in `[0, end]` a function with the derivative `slope` is highest.
 #[inline(always)]
 pub fn highest(end: f64, value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64) -> f64 {
-    let point = |i: usize| end * i as f64 / SEARCH_POINTS as f64;
-    let best = (0..=SEARCH_POINTS)
-        .map(|i| (i, value(point(i))))
+    let grid = std::array::from_fn(|i| value(point(end, i)));
+    highest_on((end, grid), value, slope)
+}
+
+/// [`highest`] with the values on the grid of points.
+#[inline(always)]
+fn highest_on(
+    (end, grid): (f64, [f64; SEARCH_POINTS + 1]),
+    value: impl Fn(f64) -> f64,
+    slope: impl Fn(f64) -> f64,
+) -> f64 {
+    let (best, most) = (0_usize..)
+        .zip(grid)
         .fold((0, f64::NEG_INFINITY), |best, next| {
             if next.1 > best.1 { next } else { best }
-        })
-        .0;
-    let (low, high) = (
-        point(best.saturating_sub(1)),
-        point((best + 1).min(SEARCH_POINTS)),
-    );
+        });
+    let low = point(end, best.saturating_sub(1));
+    let high = point(end, (best + 1).min(SEARCH_POINTS));
     let root = bracketed_root(low, high, PEAK_TOLERANCE, slope);
-    if value(root) >= value(point(best)) {
+    if value(root) >= most {
         root
     } else {
-        point(best)
+        point(end, best)
     }
 }
 
 /// Reads those of the times that lie in a piece of the motion; `last` is the last time.
+#[inline(always)]
 fn read(event: &Event, segment: &Segment<1>, piece: Piece, last: f64, out: &mut Trajectory) {
-    for (i, &time) in out.times.iter().enumerate() {
+    let first = out.times.partition_point(|time| *time < segment.from);
+    let behind = out.times.partition_point(|time| *time <= segment.to);
+    for i in first..behind.max(first) {
+        let time = out.times[i];
         let ends = segment.to >= last && time <= segment.to;
-        if time < segment.from || !(time < segment.to || ends) {
+        if !(time < segment.to || ends) {
             continue;
         }
         let sigma = sigma_of(segment, time);

@@ -6,9 +6,9 @@ pub(crate) mod scale;
 use crate::contact_window::{LEAST_SAMPLES, RINGING_PEAK, windows};
 use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
-use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, wander};
+use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, usual_deviation, wander};
 use crate::trigger::scale::{
-    GAUSSIAN_OVER_MEDIAN, Level, PulseScale, RunningSums, pulse_scale, quieter, white_noise,
+    Level, PulseScale, RunningSums, largest, pulse_scale, quieter, white_noise,
 };
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -39,10 +39,6 @@ const FIXED_CLEAR: f64 = 3.0;
 /// The noise of the averaged signal is measured where this many independent
 /// averages lie before contact.
 const LEAST_AVERAGES: usize = 40;
-
-/// Ratio of a standard deviation to that of Gaussian noise of the same median magnitude from
-/// which it is contacts, not noise, that it shows; 1.
-const CONTACTS_AMONG: f64 = 2.0;
 
 /// Above what a force counts as contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -264,10 +260,10 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     let n = signal.values.len();
 
     // A first guess of zero and sign.
-    let (pilot, zero_from_end) = pilot_level(signal.values);
+    let sample_noise = white_noise(signal.values);
+    let (pilot, zero_from_end) = pilot_level(signal.values, sample_noise);
     let keeps = options.baseline == Baseline::Keep;
     let centre = if keeps { 0.0 } else { pilot };
-    let sample_noise = white_noise(signal.values);
     let sums = RunningSums::of(signal.values);
     let PulseScale {
         top,
@@ -303,9 +299,10 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
     loop {
         let height = averaged[top] - centre;
         let quiet = quiet_stretch(signal.times, signal.values, before, (height, rise));
-        let (mean, deviation) = baseline(&signal.values[quiet.clone()])
-            .unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
-        let usual = usual_deviation(&signal.values[quiet.clone()]).unwrap_or(0.0);
+        let own = &signal.values[quiet.clone()];
+        let of_own = baseline(own);
+        let (mean, deviation) = of_own.unwrap_or((if zero_from_end { pilot } else { 0.0 }, 0.0));
+        let usual = usual_deviation(own, of_own).unwrap_or(0.0);
         contacts.deviation = deviation;
         contacts.before = before;
         contacts.trend_sd = wander(signal.values, &quiet, height.abs());
@@ -323,7 +320,7 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         };
         let smoothing = contacts.smoothing;
         let smooth = raised_sums.means(smoothing);
-        let largest = smooth.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let largest = largest(&smooth, |v| v);
         contacts.threshold = level(&contacts, options, noise(smoothing), largest, first_pass);
         let release = options.release * contacts.threshold;
         contacts.windows = windows(
@@ -369,7 +366,7 @@ fn raised(values: &[f64], zero: f64, sign: f64) -> Vec<f64> {
 fn no_contact(signal: &Signal, raised: &[f64], threshold: f64) -> Error {
     Error::NoContact {
         channel: signal.name.to_owned(),
-        largest: raised.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        largest: largest(raised, |v| v),
         threshold,
         unit: signal.unit,
     }
@@ -436,24 +433,14 @@ fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
     if averaged.len() < LEAST_AVERAGES * smoothing {
         return white;
     }
-    usual_deviation(averaged).map_or(white, |seen| seen.max(white))
-}
-
-/// Standard deviation of a baseline; where contacts are among it, of what most samples do.
-fn usual_deviation(values: &[f64]) -> Option<f64> {
-    let (centre, seen) = baseline(values)?;
-    let apart: Vec<f64> = values.iter().map(|v| (v - centre).abs()).collect();
-    let usual = GAUSSIAN_OVER_MEDIAN * median(&apart)?;
-    // None of most samples: they are steps of a converter.
-    Some(match usual > 0.0 && seen > CONTACTS_AMONG * usual {
-        true => usual,
-        false => seen,
-    })
+    usual_deviation(averaged, baseline(averaged)).map_or(white, |seen| seen.max(white))
 }
 
 /// Level of the signal outside contact, and whether it comes from the end: that
 /// is so if the signal changes in its first samples and rests in its last.
-fn pilot_level(values: &[f64]) -> (f64, bool) {
+///
+/// * `noise`: standard deviation of a sample
+fn pilot_level(values: &[f64], noise: f64) -> (f64, bool) {
     let n = values.len();
     let samples = pilot_samples(n);
     let middle = |part: &[f64]| median(part).unwrap_or(0.0);
@@ -464,10 +451,9 @@ fn pilot_level(values: &[f64]) -> (f64, bool) {
     };
     let (first, first_change) = level(&values[..samples]);
     let (last, last_change) = level(&values[n - samples..]);
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = (-largest(values, |v| -v), largest(values, |v| v));
     // Of the difference of two medians, each of half of the samples.
-    let chance = white_noise(values) * (TAU / samples as f64).sqrt();
+    let chance = noise * (TAU / samples as f64).sqrt();
     let changes = first_change > (LEVEL * (high - low)).max(PILOT_CLEAR * chance);
     if changes && last_change < first_change / 3.0 {
         return (last, true);

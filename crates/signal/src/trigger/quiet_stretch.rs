@@ -1,6 +1,8 @@
 //! The samples before a contact that tell the zero of a force.
 
+use crate::noise::estimate::median_of;
 use crate::polynomial::fit_polynomial;
+use crate::trigger::scale::GAUSSIAN_OVER_MEDIAN;
 use std::ops::Range;
 
 /// A zero is level if it changes by less than this part of the largest force; 1.
@@ -23,6 +25,10 @@ const BELOW: f64 = 0.2;
 
 /// Most parts whose means tell how far a zero wanders.
 const PARTS: usize = 8;
+
+/// Ratio of a standard deviation to that of Gaussian noise of the same median magnitude from
+/// which it is contacts, not noise, that it shows; 1.
+const CONTACTS_AMONG: f64 = 2.0;
 
 /// Of the `before` samples before contact those that are level: all of them, or else the last
 /// half, quarter … of them, as few as lie on a zero that drifts slowly. None where even the
@@ -80,6 +86,20 @@ pub(crate) fn wander(values: &[f64], quiet: &Range<usize>, largest: f64) -> f64 
         .collect();
     let square: f64 = means.windows(2).map(|m| (m[1] - m[0]).powi(2)).sum();
     (square / means.len().saturating_sub(1).max(1) as f64).sqrt()
+}
+
+/// Standard deviation of a baseline; where contacts are among it, of what most samples do.
+///
+/// * `found`: their mean and deviation as a baseline
+pub(crate) fn usual_deviation(values: &[f64], found: Option<(f64, f64)>) -> Option<f64> {
+    let (centre, seen) = found?;
+    let apart = values.iter().map(|v| (v - centre).abs());
+    let usual = GAUSSIAN_OVER_MEDIAN * median_of(apart)?;
+    // None of most samples: they are steps of a converter.
+    Some(match usual > 0.0 && seen > CONTACTS_AMONG * usual {
+        true => usual,
+        false => seen,
+    })
 }
 
 #[cfg(test)]

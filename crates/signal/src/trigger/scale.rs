@@ -1,6 +1,6 @@
 //! How long a contact lasts and over what to average it, when noise hides it.
 
-use crate::noise::estimate::median;
+use crate::noise::estimate::median_of;
 use std::ops::Range;
 
 /// A pulse stands out if its averaged height is this many standard deviations
@@ -136,11 +136,9 @@ pub fn quieter(
 ///
 /// Zero of fewer than 3 samples and of a signal that mostly does not change.
 pub fn white_noise(values: &[f64]) -> f64 {
-    let bends: Vec<f64> = values
-        .windows(3)
-        .map(|v| (v[0] - 2.0 * v[1] + v[2]).abs())
-        .collect();
-    median(&bends).unwrap_or(0.0) * GAUSSIAN_OVER_MEDIAN / 6f64.sqrt()
+    let bends = values.windows(3);
+    let bends = bends.map(|v| (v[0] - 2.0 * v[1] + v[2]).abs());
+    median_of(bends).unwrap_or(0.0) * GAUSSIAN_OVER_MEDIAN / 6f64.sqrt()
 }
 
 /// The shortest length, doubled from 1, over which the largest mean is clear of
@@ -150,8 +148,7 @@ fn length_that_shows(sums: &RunningSums, level: Level, noise: f64) -> (usize, f6
     let (mut length, mut best) = (1, (1, 0.0));
     while length <= (sums.values.len() / 4).max(1) {
         let smooth = sums.means(length);
-        let distances = smooth.iter().map(|v| (v - level.value).abs());
-        let largest = distances.fold(0.0, f64::max);
+        let largest = largest(&smooth, |v| (v - level.value).abs());
         // Variance of a mean, and of a median (π/2 times that of its mean).
         let median = std::f64::consts::FRAC_PI_2 / level.samples as f64;
         let clear = largest / (noise * (1.0 / length as f64 + median).sqrt());
@@ -166,15 +163,27 @@ fn length_that_shows(sums: &RunningSums, level: Level, noise: f64) -> (usize, f6
     best
 }
 
+/// Largest `measure` of values; −∞ of none.
+pub fn largest(values: &[f64], measure: impl Fn(f64) -> f64) -> f64 {
+    // Several largest ones side by side, which do not wait for each other.
+    const SIDES: usize = 8;
+    let more = |a: f64, b: f64| if b > a { b } else { a };
+    let mut most = [f64::NEG_INFINITY; SIDES];
+    let parts = values.chunks_exact(SIDES);
+    let rest = parts.remainder().iter().map(|v| measure(*v));
+    for part in parts {
+        for i in 0..SIDES {
+            most[i] = more(most[i], measure(part[i]));
+        }
+    }
+    most.into_iter().chain(rest).fold(f64::NEG_INFINITY, more)
+}
+
 /// Index of the value of largest `measure`, the first of equals.
 pub fn index_of_largest(values: &[f64], measure: impl Fn(f64) -> f64) -> usize {
-    (1..values.len()).fold(0, |best, i| {
-        if measure(values[i]) > measure(values[best]) {
-            i
-        } else {
-            best
-        }
-    })
+    let largest = largest(values, &measure);
+    let first = values.iter().position(|v| measure(*v) == largest);
+    first.unwrap_or(0)
 }
 
 /// Centred mean over `length` samples (odd); at both ends over those that there
@@ -199,10 +208,10 @@ impl<'a> RunningSums<'a> {
         let mut sums = Vec::with_capacity(values.len() + 1);
         sums.push(0.0);
         let mut sum = 0.0;
-        for value in values {
+        sums.extend(values.iter().map(|value| {
             sum += value;
-            sums.push(sum);
-        }
+            sum
+        }));
         Self { values, sums }
     }
 
@@ -226,11 +235,11 @@ impl<'a> RunningSums<'a> {
         let to = n.saturating_sub(half).clamp(from, range.end);
         let mut means = Vec::with_capacity(range.len());
         means.extend((range.start..from).map(mean));
-        let whole = (2 * half + 1) as f64;
+        let share = ((2 * half + 1) as f64).recip();
         if to > from {
             let (first, last) = (&sums[from - half..], &sums[from + half + 1..]);
             let windows = first.iter().zip(last).take(to - from);
-            means.extend(windows.map(|(first, last)| (last - first) / whole));
+            means.extend(windows.map(|(first, last)| (last - first) * share));
         }
         means.extend((to..range.end).map(mean));
         means

@@ -47,7 +47,10 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         None => fit_any(path, request, progress),
     });
     let outcome = outcome.map_err(tell_failures)?;
-    show(arguments.format, &outcome, text_of_any, csv_of_any)?;
+    match arguments.format {
+        Format::Json => write_result(&(outcome.json()? + "\n"))?,
+        other => show(other, &outcome, text_of_any, csv_of_any)?,
+    }
     // The text shows failures itself, beside the results.
     let told = if arguments.format == Format::Text {
         &[][..]
