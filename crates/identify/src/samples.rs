@@ -83,8 +83,7 @@ pub struct SampleGroup {
     /// Weight of each sample relative to that of its quantity, padded; empty
     /// where all are 1.
     pub(crate) relative: [Vec<f64>; QUANTITIES],
-    /// Errors of displacements at the edges of a count. Empty where samples are no edges, or
-    /// their noise is not yet known.
+    /// Errors of displacements at the edges of a count; empty where samples are no edges.
     pub(crate) edges: Vec<EdgeError>,
     /// Correlation of the noise of successive samples of each quantity; 1.
     pub(crate) persistence: [f64; QUANTITIES],

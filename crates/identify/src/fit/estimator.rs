@@ -411,16 +411,20 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
 
     /// Residuals and derivatives of each sample at coordinates `u`.
     pub fn rows(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
-        self.rows_of(u, P)
+        self.rows_of(u, |_| true)
     }
 
-    /// [`rows`](Self::rows) without the derivatives.
+    /// [`rows`](Self::rows) with the derivatives of edges alone, whose noise follows from them.
     pub(crate) fn residuals(&self, u: &[f64; P]) -> Option<(NormalEquations<P>, Rows)> {
-        self.rows_of(u, 0)
+        self.rows_of(u, |group| !group.edges.is_empty())
     }
 
-    fn rows_of(&self, u: &[f64; P], derivatives: usize) -> Option<(NormalEquations<P>, Rows)> {
-        let mut rows = Rows::of(self.groups, derivatives);
+    fn rows_of(
+        &self,
+        u: &[f64; P],
+        derived: impl Fn(&SampleGroup) -> bool,
+    ) -> Option<(NormalEquations<P>, Rows)> {
+        let mut rows = Rows::of(self.groups, P, derived);
         let mut equations = evaluate(&self.model(u), self.groups, Some(&mut rows)).ok()?;
         self.add_priors(u, 1, &mut equations);
         Some((equations, rows))

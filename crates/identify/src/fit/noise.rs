@@ -94,7 +94,7 @@ pub(crate) fn noise_plan(
         let variances = edges.variances(&edges.speeds, 0.0);
         plan.noise[Quantity::Displacement as usize] = edges.typical_deviation();
         plan.groups
-            .push(edge_group(&edges, &variances, impact.onset));
+            .push(edge_group(&edges, &edges.speeds, &variances, impact.onset));
         plan.edges = Some(edges);
     }
     let rest = grouped(impact, &used, options, modelled, &mut plan.noise);
@@ -102,14 +102,17 @@ pub(crate) fn noise_plan(
     plan
 }
 
-fn edge_group(edges: &EdgeSamples, variances: &[f64], onset: f64) -> SampleGroup {
+/// The edges with their errors, at these velocities and of these variances.
+fn edge_group(edges: &EdgeSamples, speeds: &[f64], variances: &[f64], onset: f64) -> SampleGroup {
     let times: Vec<f64> = edges.times.iter().map(|t| t - onset).collect();
     let mut values = [None; QUANTITIES];
     // A common scale, so that the quantity's weight is that of a typical edge.
     let typical = variances.iter().sum::<f64>() / variances.len() as f64;
     values[Quantity::Displacement as usize] = Some((edges.values.as_slice(), 1.0 / typical));
     let relative: Vec<f64> = variances.iter().map(|v| typical / v).collect();
-    SampleGroup::new(&times, values).with_relative_weights(Quantity::Displacement, &relative)
+    SampleGroup::new(&times, values)
+        .with_relative_weights(Quantity::Displacement, &relative)
+        .with_edges(edges.errors(speeds, variances))
 }
 
 /// Groups of the series that share their times; a series of persistent noise in
@@ -251,7 +254,7 @@ impl NoisePlan {
                 {
                     let jitter = edges.jitter(residuals, speeds, parameters);
                     let variances = edges.variances(speeds, jitter);
-                    group = edge_group(edges, &variances, impact.onset);
+                    group = edge_group(edges, speeds, &variances, impact.onset);
                     let mut scale = 1.0;
                     if residuals.len() >= ENOUGH_EDGES {
                         let before = group.weights[quantity as usize];
@@ -260,8 +263,7 @@ impl NoisePlan {
                     }
                     let shared = edges.variances_of_lines(speeds, jitter);
                     let shared: Vec<f64> = shared.iter().map(|v| v * scale).collect();
-                    group = edge_group(edges, &shared, impact.onset)
-                        .with_edges(edges.errors(speeds, &shared));
+                    group = edge_group(edges, speeds, &shared, impact.onset);
                     let own = (&residuals[..], &rows.jacobian[g][quantity as usize][..]);
                     let inflation = edge_inflation::<LARGEST_FREE>(&group, own, parameters);
                     group.weights[quantity as usize] /= inflation.max(LEAST_VARIANCE_RATIO);

@@ -25,20 +25,25 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Room for the rows of all samples, with so many derivatives of each.
-    pub(crate) fn of(groups: &[SampleGroup], derivatives: usize) -> Self {
-        let room = |each: usize| -> Vec<[Vec<f64>; QUANTITIES]> {
+    /// Room for the residuals of all samples, and for so many derivatives of each sample of the
+    /// groups that are `chosen`.
+    pub(crate) fn of(
+        groups: &[SampleGroup],
+        derivatives: usize,
+        chosen: impl Fn(&SampleGroup) -> bool,
+    ) -> Self {
+        let room = |each: &dyn Fn(&SampleGroup) -> usize| -> Vec<[Vec<f64>; QUANTITIES]> {
             let of = |group: &SampleGroup, q: usize| match group.values[q].is_empty() {
                 true => Vec::new(),
-                false => vec![0.0; group.len * each],
+                false => vec![0.0; group.len * each(group)],
             };
             let all = groups.iter();
             all.map(|group| std::array::from_fn(|q| of(group, q)))
                 .collect()
         };
         Self {
-            residuals: room(1),
-            jacobian: room(derivatives),
+            residuals: room(&|_| 1),
+            jacobian: room(&|group| if chosen(group) { derivatives } else { 0 }),
         }
     }
 

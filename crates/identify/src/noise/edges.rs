@@ -39,7 +39,7 @@ pub(crate) struct EdgeSamples {
     pub values: Vec<f64>,
     /// Sampling interval around each; s.
     pub intervals: Vec<f64>,
-    /// Speed there by the neighbouring edges; m/s.
+    /// Velocity there by the neighbouring edges; m/s.
     pub speeds: Vec<f64>,
     /// Whether the same line is passed a second time.
     pub repeated: Vec<bool>,
@@ -73,7 +73,7 @@ pub(crate) fn edge_samples(series: &Series) -> Option<EdgeSamples> {
         .map(|i| {
             let (from, to) = (i.saturating_sub(1), (i + 1).min(count - 1));
             let span = found.times[to] - found.times[from];
-            (found.values[to] - found.values[from]).abs() / span
+            (found.values[to] - found.values[from]) / span
         })
         .collect();
     let line = |value: f64| (2.0 * value / quantum).round() as i64;
