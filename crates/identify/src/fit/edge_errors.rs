@@ -22,16 +22,18 @@ pub(crate) fn meat_of_edges<const P: usize>(
 ) -> [[f64; P]; P] {
     let mut meat = [[0.0; P]; P];
     let mut sums = [[0.0; P]; PHASES];
+    let part = |place: f64| place - place.floor();
     let rows = jacobian.chunks_exact(jacobian.len() / residuals.len());
     for (i, (row, edge)) in rows.zip(&group.edges).enumerate() {
         let weight = group.weight_of(Quantity::Displacement, i);
         let place = match edge.span == 0.0 {
             true => 0.5,
-            false => residuals[i] / edge.span + 0.5,
+            false => part(residuals[i] / edge.span + 0.5),
         };
         for (phase, sum) in sums.iter_mut().enumerate() {
             let moved = place + (phase as f64 + 0.5) / PHASES as f64;
-            let error = (moved - moved.floor() - 0.5) * edge.span;
+            let moved = if moved < 1.0 { moved } else { moved - 1.0 };
+            let error = (moved - 0.5) * edge.span;
             for (sum, derivative) in sum.iter_mut().zip(row) {
                 *sum += weight * error * derivative;
             }

@@ -24,6 +24,9 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 /// samples leave at separation: two tenths of a standard deviation. With free motion
 /// after contact the other directions are known so well that a tenth is not reached.
 const ROUGHNESS: f64 = 0.04;
+/// Relative change of the cost at convergence where only the noise is wanted: χ² of a
+/// thousand samples settles to a ten thousandth.
+const NOISE_TOLERANCE: f64 = 1e-7;
 /// Steps over a cusp in the onset; sampling intervals.
 const CUSP_SHIFTS: [f64; 8] = [0.3, -0.3, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0];
 /// Difference of the law's parameters at which two minima are the same; standard deviations.
@@ -158,12 +161,16 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     limits: &Limits,
 ) -> Option<Solution> {
     let law_count = starts.first()?.0.len();
+    let only_noise = matches!(limits.wanted, Wanted::Residuals);
     let mut best: Option<(Estimator<L, N, W, P>, Minimum<P>)> = None;
     let mut evaluations = 0;
     for start in starts {
         let mut estimator =
             Estimator::<L, N, W, P>::new(law, samples.0, samples.1, free, values(start));
-        let minimum = estimator.minimise(&options(free, limits));
+        let minimum = match only_noise {
+            true => estimator.minimise_condensed(&options(free, limits)),
+            false => estimator.minimise(&options(free, limits)),
+        };
         evaluations += minimum.evaluations;
         if minimum.stop == Stop::BadStart {
             continue;
@@ -186,7 +193,7 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     let (minimum, spent) = over_onsets(&estimator, minimum, &options(free, limits));
     evaluations += spent;
     let smooth = minimum;
-    let (minimum, spent) = match limits.instants {
+    let (minimum, spent) = match limits.instants && !only_noise {
         true => polished(&estimator, minimum, &options(free, limits)),
         false => (minimum, 0),
     };
@@ -344,7 +351,10 @@ fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P
         };
     }
     Options {
-        cost_tolerance: limits.cost_tolerance,
+        cost_tolerance: match limits.wanted {
+            Wanted::Residuals => limits.cost_tolerance.max(NOISE_TOLERANCE),
+            Wanted::Covariance | Wanted::Intervals(_) => limits.cost_tolerance,
+        },
         max_evaluations: limits.max_evaluations,
         roughness: ROUGHNESS / limits.samples as f64,
         largest_step,
