@@ -322,12 +322,6 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
         self.finish(self.search(options))
     }
 
-    /// As [`minimise`](Self::minimise), to the minimum for condensed samples where there are
-    /// such: near enough to tell the noise.
-    pub(crate) fn minimise_condensed(&self, options: &Options<P>) -> Minimum<P> {
-        self.finish(self.search(options).ending_condensed())
-    }
-
     fn finish(&self, mut search: Search<P>) -> Minimum<P> {
         while let Some(u) = search.propose() {
             let found = self.evaluate_share(&u, &search.share());

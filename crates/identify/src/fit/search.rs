@@ -85,8 +85,6 @@ pub(crate) struct Search<'a, const P: usize> {
     options: Options<P>,
     /// Evaluations of stages that are over.
     spent: usize,
-    /// Whether the minimum for condensed samples is the end.
-    condensed_ends: bool,
 }
 
 impl<'a, const P: usize> Search<'a, P> {
@@ -116,18 +114,9 @@ impl<'a, const P: usize> Search<'a, P> {
             bounds: *bounds,
             options: *options,
             spent: 0,
-            condensed_ends: false,
         };
         search.turn();
         search
-    }
-
-    /// The same search, which ends at the minimum for condensed samples where there are such.
-    pub(crate) fn ending_condensed(self) -> Self {
-        Self {
-            condensed_ends: true,
-            ..self
-        }
     }
 
     /// Where to evaluate next; `None` at the end.
@@ -194,10 +183,6 @@ impl<'a, const P: usize> Search<'a, P> {
                 continue;
             }
             let over = self.stage;
-            let at_minimum = found.stop == Stop::Converged && self.options.foresight == 0.0;
-            if self.condensed_ends && over == Stage::Close && at_minimum {
-                return;
-            }
             self.stage = match over {
                 Stage::Approach => self.come_close(),
                 Stage::Close => Stage::Near,

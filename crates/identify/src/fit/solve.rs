@@ -161,16 +161,12 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     limits: &Limits,
 ) -> Option<Solution> {
     let law_count = starts.first()?.0.len();
-    let only_noise = matches!(limits.wanted, Wanted::Residuals);
     let mut best: Option<(Estimator<L, N, W, P>, Minimum<P>)> = None;
     let mut evaluations = 0;
     for start in starts {
         let mut estimator =
             Estimator::<L, N, W, P>::new(law, samples.0, samples.1, free, values(start));
-        let minimum = match only_noise {
-            true => estimator.minimise_condensed(&options(free, limits)),
-            false => estimator.minimise(&options(free, limits)),
-        };
+        let minimum = estimator.minimise(&options(free, limits));
         evaluations += minimum.evaluations;
         if minimum.stop == Stop::BadStart {
             continue;
@@ -193,7 +189,7 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     let (minimum, spent) = over_onsets(&estimator, minimum, &options(free, limits));
     evaluations += spent;
     let smooth = minimum;
-    let (minimum, spent) = match limits.instants && !only_noise {
+    let (minimum, spent) = match limits.instants {
         true => polished(&estimator, minimum, &options(free, limits)),
         false => (minimum, 0),
     };
