@@ -134,7 +134,7 @@ impl Source {
 
     /// `count` bytes from `offset`, checked before allocating; errors as in [`Source::read_at`].
     pub fn bytes_at(&self, offset: u64, count: u64) -> Result<Vec<u8>, Error> {
-        if count > self.length.saturating_sub(offset) {
+        if offset > self.length || count > self.length - offset {
             return Err(self.truncated(offset, "the data here", count));
         }
         if let Bytes::Memory(bytes) = &self.bytes {

@@ -128,8 +128,8 @@ fn pinned_numbers_are_those_of_the_revision() {
     let expected = (
         10,
         [
-            "263d7ac7fef567fa",
-            "4e428df6ee6b18d3",
+            "add718a00caeb5eb",
+            "e6be9b409addacb1",
             "0d9a7fd3ea4b6a51",
             "362e0649b943bd49",
             "3e453baf43c8c589",

@@ -54,7 +54,8 @@ impl Rows {
     }
 }
 
-/// Normal equations of `model` against `groups`; with `rows`, those that there is room for too.
+/// Normal equations of `model` against `groups`; with `rows`, those that there is room for too
+/// (all, if it is empty).
 ///
 /// # Errors
 /// [`StepError`] when the motion cannot be integrated.
@@ -98,9 +99,12 @@ pub(crate) fn evaluate_some<L: ContactLaw<N>, const N: usize, const W: usize, co
 fn pass<L: ContactLaw<N>, const N: usize, const W: usize, const P: usize>(
     model: &Model<L, N, W, P>,
     groups: &[SampleGroup],
-    rows: Option<&mut Rows>,
+    mut rows: Option<&mut Rows>,
     stride: usize,
 ) -> Result<Found<P>, StepError> {
+    if let Some(rows) = rows.as_mut().filter(|rows| rows.residuals.is_empty()) {
+        **rows = Rows::of(groups, P, |_| true);
+    }
     compiled_for_vectors(Pass {
         model,
         groups,

@@ -24,9 +24,6 @@ const LONGEST_STEP: (f64, f64) = (2.0, 0.5);
 /// samples leave at separation: two tenths of a standard deviation. With free motion
 /// after contact the other directions are known so well that a tenth is not reached.
 const ROUGHNESS: f64 = 0.04;
-/// Relative change of the cost at convergence where only the noise is wanted: χ² of a
-/// thousand samples settles to a ten thousandth.
-const NOISE_TOLERANCE: f64 = 1e-7;
 /// Steps over a cusp in the onset; sampling intervals.
 const CUSP_SHIFTS: [f64; 8] = [0.3, -0.3, 0.7, -0.7, 1.5, -1.5, 3.0, -3.0];
 /// Difference of the law's parameters at which two minima are the same; standard deviations.
@@ -347,10 +344,7 @@ fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P
         };
     }
     Options {
-        cost_tolerance: match limits.wanted {
-            Wanted::Residuals => limits.cost_tolerance.max(NOISE_TOLERANCE),
-            Wanted::Covariance | Wanted::Intervals(_) => limits.cost_tolerance,
-        },
+        cost_tolerance: limits.cost_tolerance,
         max_evaluations: limits.max_evaluations,
         roughness: ROUGHNESS / limits.samples as f64,
         largest_step,

@@ -31,7 +31,7 @@ const SMALLEST_INFLATION: f64 = 1.0;
 /// its weights say. s² is the mean square of a channel's residuals so
 /// standardised, λ its inflation by what correlation is left ([`inflation`]).
 ///
-/// Edges of a count have a part of their own ([`meat_of_edges`]).
+/// Edges of a count have a part of their own: their errors cancel or add up.
 /// A channel whose noise the user gave has λ s² = 1, and so have priors, which add J Jᵀ / σ².
 ///
 /// * `equations`: N at the optimum, zeros taken out, with priors
