@@ -166,10 +166,39 @@ fn recovers_at_the_stated_rate_in_coloured_noise() {
     assert!(modelled.iter().all(|n| *n >= 52), "{modelled:?}");
 }
 
-/// With as many samples as here the four ways agree on average; in single impacts the phases
-/// of an encoder's edges, which only estimate ± deviation knows, add up or cancel.
+/// With as many samples as here the four ways nearly agree, where the noise of the displacement
+/// is known.
 #[test]
 fn converges_all_intervals_to_the_same() {
+    let impact = coloured(7);
+    let known = |options: FitOptions| FitOptions {
+        noise_sd: [Some(2.5e-6), None, None, None],
+        ..options
+    };
+    let reference = fit(&impact, "kuwabara-kono", &known(FitOptions::default()));
+    for method in [
+        IntervalMethod::Profile,
+        IntervalMethod::Bootstrap,
+        IntervalMethod::Posterior,
+    ] {
+        let found = fit(&impact, "kuwabara-kono", &known(with(method)));
+        for (one, other) in found.parameters.iter().zip(&reference.parameters) {
+            let (width, expected) = (one.high - one.low, other.high - other.low);
+            println!("{} {}: {:.3}", method.name(), one.name, width / expected);
+            // Quantiles of 400 replicates scatter by 6 %.
+            assert!(
+                (width / expected - 1.0).abs() < 0.2,
+                "{method:?} {one:?} {other:?}"
+            );
+            assert!(one.low < one.value && one.value < one.high);
+        }
+    }
+}
+
+/// From the edges of a count the four ways agree on average; in single impacts the phases
+/// of the edges, which only estimate ± deviation knows, add up or cancel.
+#[test]
+fn converges_all_intervals_of_edges_on_average() {
     const IMPACTS: u64 = 12;
     for method in [
         IntervalMethod::Profile,

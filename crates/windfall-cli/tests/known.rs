@@ -57,14 +57,20 @@ fn tell(folder: &Path, old: &str, new: &str) {
 #[test]
 fn repeats_a_prior_of_the_file_as_an_option() {
     let folder = campaign();
-    let plain = outcome(folder.path(), &[]);
-    let asked = outcome(folder.path(), &["--prior", "k=394900 ± 300 N/m^1.5"]);
+    // Deviations from edges of a count know more than the weights: then precisions add up on
+    // average only.
+    let noise = ["--noise-sd", "displacement=2.5 um"];
+    let plain = outcome(folder.path(), &noise);
+    let asked = outcome(
+        folder.path(),
+        &[&noise[..], &["--prior", "k=394900 ± 300 N/m^1.5"]].concat(),
+    );
     tell(
         folder.path(),
         "[summary]",
         "[fit.prior]\nk = \"394900 ± 300 N/m^1.5\"\n\n[summary]",
     );
-    let told = outcome(folder.path(), &[]);
+    let told = outcome(folder.path(), &noise);
     assert_eq!(asked["impacts"], told["impacts"]);
     assert_eq!(told["status"]["stored"], 8, "one key for both");
     let own = &told["summary"]["k"];
@@ -76,17 +82,12 @@ fn repeats_a_prior_of_the_file_as_an_option() {
         .zip(plain["impacts"].as_array().unwrap())
     {
         let sd = |own: &Value| own["parameters"]["k"]["sd"].as_f64().unwrap();
-        // Precisions add up, nearly: the weights know the phases of the encoder's edges on average
-        // only, their deviations in each impact.
+        // Precisions add up.
         let expected = (sd(without).powi(-2) + 300f64.powi(-2)).powf(-0.5);
-        assert!(
-            (sd(with) / expected - 1.0).abs() < 0.25,
-            "{} {expected}",
-            sd(with)
-        );
+        assert!((sd(with) / expected - 1.0).abs() < 0.05, "{expected}");
         let moved = with["common"]["prior.k"]["k"].as_f64().unwrap();
         assert!(
-            (moved / (sd(with).powi(2) / 300.0) - 1.0).abs() < 0.5,
+            (moved / (sd(with).powi(2) / 300.0) - 1.0).abs() < 0.1,
             "{moved}"
         );
         shares.push(moved);
