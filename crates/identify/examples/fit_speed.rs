@@ -11,7 +11,7 @@ use rustix::time::{ClockId, clock_gettime};
 use std::time::Instant;
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kuwabara_kono::KuwabaraKono;
-use windfall_identify::fit::batch::{BatchProblem, minimise_batch};
+use windfall_identify::fit::batch::{BatchProblem, Room, minimise_batch};
 use windfall_identify::fit::estimator::{
     Coordinate, Estimator, FORESIGHT, FreeParameter, Setting, Target, Values,
 };
@@ -165,6 +165,7 @@ fn fit<const P: usize>(group: &SampleGroup, k: f64, c: f64) -> (Values<2>, usize
 fn measure_batch<const W: usize, const P: usize>(seeds: &[SampleGroup]) -> (f64, usize) {
     let free = free();
     let mut minima = vec![Minimum::NONE; BATCH];
+    let mut room = Room::of(&seeds[..1]);
     let mut spent = [0.0; BATCH_ROUNDS];
     for spent in &mut spent {
         let begin = processor_seconds();
@@ -172,7 +173,7 @@ fn measure_batch<const W: usize, const P: usize>(seeds: &[SampleGroup]) -> (f64,
         let problems: Vec<Fit<W, P>> = recordings
             .map(|group| problem(group, &free, [2e5, 300.0]))
             .collect();
-        minimise_batch(std::hint::black_box(&problems), &mut minima);
+        minimise_batch(std::hint::black_box(&problems), &mut minima, &mut room);
         std::hint::black_box(&minima);
         *spent = processor_seconds() - begin;
     }

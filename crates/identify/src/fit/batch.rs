@@ -8,10 +8,12 @@
 
 use crate::fit::batch_law::{BatchLaw, IMPACTS};
 use crate::fit::batch_motion::{Impacts, Next, Way, attempt_all};
+use crate::fit::condensed::Condensed;
 use crate::fit::estimator::Estimator;
 use crate::fit::model::Model;
 use crate::fit::residual::{Found, Tally, read_piece, span};
 use crate::fit::search::{Search, Share};
+use crate::samples::SampleGroup;
 use windfall_numerics::least_squares::{Minimum, Options};
 use windfall_numerics::ode::lockstep::{Lockstep, Outcome};
 
@@ -27,16 +29,28 @@ pub struct BatchProblem<'a, L, const N: usize, const W: usize, const P: usize> {
     pub options: Options<P>,
 }
 
+/// Room for the condensed samples of the impacts that are fitted side by side.
+pub struct Room([Condensed; IMPACTS]);
+
+impl Room {
+    /// Room for impacts of as many samples as these.
+    pub fn of(groups: &[SampleGroup]) -> Self {
+        Self(std::array::from_fn(|_| Condensed::room(groups)))
+    }
+}
+
 /// Minimises the cost of each problem, as [`Estimator::minimise`] does or, with
 /// [`BatchProblem::from`], [`Estimator::minimise_from`]; `minima` takes the
 /// results, in the order of the problems, as many as there are of both.
 ///
 /// # Numerics
 /// [`IMPACTS`] impacts at a time. Laws with history or with a kink are integrated
-/// one by one. Nothing is allocated but the condensed samples of a fit.
+/// one by one. Where `room` is large enough, nothing is allocated but copies of samples that
+/// are not condensed (edges of a count, persistent noise) beside some that are.
 pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
     problems: &[BatchProblem<L, N, W, P>],
     minima: &mut [Minimum<P>],
+    room: &mut Room,
 ) where
     L: BatchLaw<N>,
 {
@@ -47,6 +61,7 @@ pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
     let mut batch = Batch {
         impacts: Impacts::new(first.estimator.law()),
         lockstep: Lockstep::IDLE,
+        room,
     };
     let mut slots: [Option<Slot<L, N, W, P>>; IMPACTS] = [const { None }; IMPACTS];
     for (lane, slot) in slots.iter_mut().enumerate() {
@@ -63,9 +78,10 @@ pub fn minimise_batch<L, const N: usize, const W: usize, const P: usize>(
 }
 
 /// What all lanes share.
-struct Batch<L: BatchLaw<N>, const N: usize, const W: usize> {
+struct Batch<'r, L: BatchLaw<N>, const N: usize, const W: usize> {
     impacts: Impacts<L, N, W>,
     lockstep: Lockstep<2, W, IMPACTS>,
+    room: &'r mut Room,
 }
 
 /// The impact of one lane.
@@ -84,7 +100,7 @@ struct Run<L, const N: usize, const W: usize, const P: usize> {
     tally: Tally<P>,
 }
 
-impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
+impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<'_, L, N, W> {
     /// Gives `lane` something to integrate: the next evaluation of its impact, or
     /// the first of the next impact that waits.
     fn feed<'p, 'a: 'p, const P: usize>(
@@ -99,12 +115,14 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
                     self.lockstep.end(lane);
                     return;
                 };
+                let (estimator, options) = (&problem.estimator, &problem.options);
+                let room = std::mem::take(&mut self.room.0[lane]);
                 *slot = Some(Slot {
                     problem,
                     minimum,
                     search: match &problem.from {
-                        Some(from) => problem.estimator.search_from(from, &problem.options),
-                        None => problem.estimator.search(&problem.options),
+                        Some(from) => estimator.search_from(from, options, room),
+                        None => estimator.search(options, room),
                     },
                     run: None,
                 });
@@ -112,7 +130,9 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> Batch<L, N, W> {
             };
             let Some(u) = fit.search.propose() else {
                 *fit.minimum = fit.search.minimum();
-                *slot = None;
+                if let Some(fit) = slot.take() {
+                    self.room.0[lane] = fit.search.into_room();
+                }
                 continue;
             };
             if self.begin(lane, fit, &u) {

@@ -1,7 +1,7 @@
 //! Bootstrap of one impact: recordings made of the fitted model and blocks of
 //! its own residuals, each fitted again.
 
-use crate::fit::batch::{BatchProblem, minimise_batch};
+use crate::fit::batch::{BatchProblem, Room, minimise_batch};
 use crate::fit::batch_law::BatchLaw;
 use crate::fit::estimator::{Estimator, FreeParameter};
 use crate::fit::interval::{
@@ -77,6 +77,7 @@ pub(crate) fn bootstrap_intervals<
         cost_tolerance: GAIN_LEFT / minimum.equations.cost.max(1.0),
         ..*options
     };
+    let mut room = Room::of(estimator.groups());
     let mut recordings = vec![estimator.groups().to_vec(); TOGETHER.min(replicates)];
     let mut starts = vec![[0.0; P]; recordings.len()];
     let mut frees = vec![free.to_vec(); recordings.len()];
@@ -101,7 +102,7 @@ pub(crate) fn bootstrap_intervals<
                 options,
             })
             .collect();
-        minimise_batch(&problems, &mut minima[..together]);
+        minimise_batch(&problems, &mut minima[..together], &mut room);
         for (problem, found) in problems.into_iter().zip(&mut minima) {
             if found.stop == Stop::BadStart {
                 let mut refit = problem.estimator;

@@ -136,17 +136,55 @@ fn root(j: usize, steps: &[f64; NODES]) -> f64 {
     0.5 * (low + high)
 }
 
-/// The groups with their smooth stretches condensed; `None` where that is not worth
-/// it, since few samples are evenly spaced and of white noise.
-pub(crate) fn condensed(groups: &[SampleGroup], bends: Bends) -> Option<Vec<SampleGroup>> {
-    let suitable = groups.iter().any(suits);
-    suitable.then(|| {
-        let each = groups.iter().map(|group| match suits(group) {
-            true => condense(group, bends),
-            false => group.clone(),
-        });
-        each.collect()
-    })
+/// Condensed samples of a fit, and room for those of others.
+#[derive(Clone, Debug, Default)]
+pub struct Condensed {
+    groups: Vec<SampleGroup>,
+    /// Whether they are those of the fit.
+    filled: bool,
+}
+
+impl Condensed {
+    /// Room for what samples like these are condensed to.
+    pub(crate) fn room(groups: &[SampleGroup]) -> Self {
+        LazyLock::force(&BLOCKS);
+        let mut groups = groups.to_vec();
+        for group in &mut groups {
+            group.shares.reserve(group.len + PACK);
+        }
+        Self {
+            groups,
+            filled: false,
+        }
+    }
+
+    /// Takes the groups with their smooth stretches condensed, in the room that there is;
+    /// nothing where that is not worth it, since few samples are evenly spaced and of white
+    /// noise.
+    pub(crate) fn fill(&mut self, groups: &[SampleGroup], bends: Bends) {
+        self.filled = groups.iter().any(suits);
+        if !self.filled {
+            return;
+        }
+        let none = || SampleGroup::new(&[], [None; QUANTITIES]);
+        self.groups.resize_with(groups.len(), none);
+        for (to, group) in self.groups.iter_mut().zip(groups) {
+            match suits(group) {
+                true => condense(group, bends, to),
+                false => to.clone_from(group),
+            }
+        }
+    }
+
+    /// Takes nothing; the room stays.
+    pub(crate) fn empty(&mut self) {
+        self.filled = false;
+    }
+
+    /// The condensed samples, if any.
+    pub(crate) fn groups(&self) -> Option<&[SampleGroup]> {
+        self.filled.then_some(&self.groups)
+    }
 }
 
 fn suits(group: &SampleGroup) -> bool {
@@ -160,7 +198,8 @@ fn suits(group: &SampleGroup) -> bool {
             .all(|persistence| *persistence == 0.0)
 }
 
-fn condense(group: &SampleGroup, bends: Bends) -> SampleGroup {
+/// Writes a condensed group into `to`.
+fn condense(group: &SampleGroup, bends: Bends, to: &mut SampleGroup) {
     let interval = group.interval();
     let first = group.times[0];
     let place = |time: f64| (time - first) / interval;
@@ -179,94 +218,70 @@ fn condense(group: &SampleGroup, bends: Bends) -> SampleGroup {
             && clear(touch, margin.max(length as f64))
             && separation.is_none_or(|end| clear(end, margin))
     };
-    let mut out = Condensed::new(group);
+    clear(to, group);
     let mut at = 0;
     while at < group.len {
         let blocks = BLOCKS.iter().rev();
         match blocks.into_iter().find(|block| fits(at, block.length)) {
             Some(block) => {
-                out.block(group, at, block, first + at as f64 * interval);
+                add_block(to, (group, at), block, first + at as f64 * interval);
                 at += block.length;
             }
             None => {
-                out.sample(group, at);
+                add_sample(to, group, at);
                 at += 1;
             }
         }
     }
-    out.complete(group)
+    to.len = to.times.len();
+    let values = to.values.iter_mut().chain([&mut to.times, &mut to.shares]);
+    for own in values.filter(|own| !own.is_empty()) {
+        own.resize(own.len() + PACK, 0.0);
+    }
 }
 
-/// What a group is condensed to, so far.
-struct Condensed {
-    times: Vec<f64>,
-    values: [Vec<f64>; QUANTITIES],
-    shares: Vec<f64>,
-    remainder: [f64; QUANTITIES],
+/// Makes `to` a group like `group`, without samples.
+fn clear(to: &mut SampleGroup, group: &SampleGroup) {
+    let vectors = to.values.iter_mut().chain(&mut to.relative);
+    for own in vectors.chain([&mut to.times, &mut to.shares]) {
+        own.clear();
+    }
+    to.edges.clear();
+    to.remainder = [0.0; QUANTITIES];
+    to.even = false;
+    to.weights = group.weights;
+    to.persistence = group.persistence;
+    to.zero_sd = group.zero_sd;
+    to.means = group.means;
+    to.given = group.given;
+    to.interval = group.interval;
 }
 
-impl Condensed {
-    fn new(group: &SampleGroup) -> Self {
-        let room = || Vec::with_capacity(group.len / 2 + PACK);
-        let held = |q: usize| !group.values[q].is_empty();
-        Self {
-            times: room(),
-            values: std::array::from_fn(|q| if held(q) { room() } else { Vec::new() }),
-            shares: room(),
-            remainder: [0.0; QUANTITIES],
-        }
+fn add_sample(to: &mut SampleGroup, group: &SampleGroup, at: usize) {
+    to.times.push(group.times[at]);
+    to.shares.push(1.0);
+    for (to, from) in to.values.iter_mut().zip(&group.values) {
+        to.extend(from.get(at));
     }
+}
 
-    fn sample(&mut self, group: &SampleGroup, at: usize) {
-        self.times.push(group.times[at]);
-        self.shares.push(1.0);
-        for (to, from) in self.values.iter_mut().zip(&group.values) {
-            to.extend(from.get(at));
+/// Adds what the samples of `group` from `at` are condensed to; their first is at `start`.
+fn add_block(to: &mut SampleGroup, (group, at): (&SampleGroup, usize), block: &Block, start: f64) {
+    let interval = group.interval();
+    to.times
+        .extend(block.nodes.map(|node| start + node * interval));
+    to.shares.extend(block.weights);
+    for q in 0..QUANTITIES {
+        if group.values[q].is_empty() {
+            continue;
         }
-    }
-
-    fn block(&mut self, group: &SampleGroup, at: usize, block: &Block, start: f64) {
-        let interval = group.interval();
-        self.times
-            .extend(block.nodes.map(|node| start + node * interval));
-        self.shares.extend(block.weights);
-        for q in 0..QUANTITIES {
-            if group.values[q].is_empty() {
-                continue;
-            }
-            let samples = &group.values[q][at..at + block.length];
-            let (values, square) = with_four_lanes(Project { block, samples });
-            let seen: f64 = (0..NODES)
-                .map(|j| block.weights[j] * values[j] * values[j])
-                .sum();
-            self.remainder[q] += (square - seen).max(0.0);
-            self.values[q].extend(values);
-        }
-    }
-
-    fn complete(self, group: &SampleGroup) -> SampleGroup {
-        let pad = |mut values: Vec<f64>| {
-            if !values.is_empty() {
-                values.resize(values.len() + PACK, 0.0);
-            }
-            values
-        };
-        SampleGroup {
-            len: self.times.len(),
-            times: pad(self.times),
-            values: self.values.map(pad),
-            shares: pad(self.shares),
-            remainder: self.remainder,
-            even: false,
-            weights: group.weights,
-            relative: Default::default(),
-            edges: Vec::new(),
-            persistence: group.persistence,
-            zero_sd: group.zero_sd,
-            means: group.means,
-            given: group.given,
-            interval: group.interval,
-        }
+        let samples = &group.values[q][at..at + block.length];
+        let (values, square) = with_four_lanes(Project { block, samples });
+        let seen: f64 = (0..NODES)
+            .map(|j| block.weights[j] * values[j] * values[j])
+            .sum();
+        to.remainder[q] += (square - seen).max(0.0);
+        to.values[q].extend(values);
     }
 }
 
@@ -363,8 +378,9 @@ mod tests {
             touch: 2.003e-3,
             separation: Some(8.007e-3),
         };
-        let found = condensed(&[group], bends).unwrap();
-        let found = &found[0];
+        let mut found = Condensed::default();
+        found.fill(&[group], bends);
+        let found = &found.groups().unwrap()[0];
         let total: f64 = found.shares[..found.len].iter().sum();
         assert!((total - 1000.0).abs() < 1e-9);
         assert!(found.len < 250, "{}", found.len);

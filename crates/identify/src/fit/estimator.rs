@@ -1,6 +1,7 @@
 //! The nonlinear least-squares problem of one impact: free parameters in
 //! coordinates of their own, the model behind them, the minimiser around it.
 
+use crate::fit::condensed::Condensed;
 use crate::fit::model::{Columns, Model, Sampling};
 use crate::fit::problem::Prior;
 use crate::fit::residual::{Found, Rows, evaluate, evaluate_some};
@@ -319,7 +320,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     /// with a coarser integration at first; the minimum with all of them. Where that
     /// fails, all is done with all of them.
     pub fn minimise(&mut self, options: &Options<P>) -> Minimum<P> {
-        self.finish(self.search(options))
+        self.finish(self.search(options, Condensed::default()))
     }
 
     fn finish(&self, mut search: Search<P>) -> Minimum<P> {
@@ -331,7 +332,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
     }
 
     /// The search that [`minimise`](Self::minimise) makes.
-    pub(crate) fn search(&self, options: &Options<P>) -> Search<'a, P> {
+    pub(crate) fn search(&self, options: &Options<P>, room: Condensed) -> Search<'a, P> {
         let mut start = [0.0; P];
         for (u, parameter) in start.iter_mut().zip(self.free) {
             *u = parameter.coordinate.of(self.base.get(parameter.target));
@@ -340,13 +341,19 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
             true => seen(options),
             false => *options,
         };
-        Search::new(&start, &self.bounds(), &options, self.samples(&start, true))
+        let samples = self.samples(&start, true);
+        Search::new(&start, &self.bounds(), &options, samples, room)
     }
 
     /// The search that [`minimise_from`](Self::minimise_from) makes.
-    pub(crate) fn search_from(&self, start: &[f64; P], options: &Options<P>) -> Search<'a, P> {
+    pub(crate) fn search_from(
+        &self,
+        start: &[f64; P],
+        options: &Options<P>,
+        room: Condensed,
+    ) -> Search<'a, P> {
         let samples = self.samples(start, false);
-        Search::new(start, &self.bounds(), &seen(options), samples)
+        Search::new(start, &self.bounds(), &seen(options), samples, room)
     }
 
     /// The samples, of which few packs show the way from `far`. A free onset has many
@@ -406,7 +413,7 @@ impl<'a, L: FreeLaw<N>, const N: usize, const W: usize, const P: usize> Estimato
 
     /// Minimum of the cost from coordinates `start`, whose end is never foreseen.
     pub fn minimise_from(&mut self, start: &[f64; P], options: &Options<P>) -> Minimum<P> {
-        self.finish(self.search_from(start, options))
+        self.finish(self.search_from(start, options, Condensed::default()))
     }
 
     /// Residuals and derivatives of each sample at coordinates `u`.

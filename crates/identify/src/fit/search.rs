@@ -1,7 +1,7 @@
 //! The way of one fit to its minimum: first with a share of the samples, then with
 //! condensed ones, at last with all of them.
 
-use crate::fit::condensed::{Bends, condensed};
+use crate::fit::condensed::{Bends, Condensed};
 use crate::fit::residual::Found;
 use crate::samples::SampleGroup;
 use windfall_numerics::least_squares::{Bounds, Descent, Minimum, Options, Stop};
@@ -76,7 +76,7 @@ impl<'s> Share<'s> {
 pub(crate) struct Search<'a, const P: usize> {
     stage: Stage,
     samples: Samples<'a>,
-    condensed: Option<Vec<SampleGroup>>,
+    condensed: Condensed,
     /// Corners of the model at the last evaluation.
     bends: Option<Bends>,
     descent: Descent<P>,
@@ -88,19 +88,20 @@ pub(crate) struct Search<'a, const P: usize> {
 }
 
 impl<'a, const P: usize> Search<'a, P> {
-    /// A search from `start`.
+    /// A search from `start`, which condenses samples into `condensed`.
     pub fn new(
         start: &[f64; P],
         bounds: &Bounds<P>,
         options: &Options<P>,
         samples: Samples<'a>,
+        mut condensed: Condensed,
     ) -> Self {
-        let condensed = match (samples.stride, samples.touch) {
-            (None, Some(touch)) => condensed(samples.groups, Bends::of_touch(touch)),
-            _ => None,
-        };
+        condensed.empty();
+        if let (None, Some(touch)) = (samples.stride, samples.touch) {
+            condensed.fill(samples.groups, Bends::of_touch(touch));
+        }
         let first = seen(options);
-        let (stage, first) = match samples.stride.is_some() || condensed.is_some() {
+        let (stage, first) = match samples.stride.is_some() || condensed.groups().is_some() {
             true => (Stage::Approach, coarse(&first, APPROACH_GAIN)),
             false => (Stage::Alone, first),
         };
@@ -128,7 +129,7 @@ impl<'a, const P: usize> Search<'a, P> {
     pub(crate) fn share(&self) -> Share<'_> {
         let all = Share::all(self.samples.groups);
         let few = Share {
-            groups: self.condensed.as_deref().unwrap_or(all.groups),
+            groups: self.condensed.groups().unwrap_or(all.groups),
             ..all
         };
         match self.stage {
@@ -158,6 +159,11 @@ impl<'a, const P: usize> Search<'a, P> {
         let mut minimum = self.descent.minimum();
         minimum.evaluations += self.spent;
         minimum
+    }
+
+    /// The room that its condensed samples took.
+    pub(crate) fn into_room(self) -> Condensed {
+        self.condensed
     }
 
     /// Enters the next stage where one has ended.
@@ -209,11 +215,11 @@ impl<'a, const P: usize> Search<'a, P> {
 
     /// What follows the approach: condensed samples, where there are such.
     fn come_close(&mut self) -> Stage {
-        self.condensed = match (self.samples.touch, self.bends) {
-            (Some(_), Some(bends)) => condensed(self.samples.groups, bends),
-            _ => None,
-        };
-        match self.condensed {
+        self.condensed.empty();
+        if let (Some(_), Some(bends)) = (self.samples.touch, self.bends) {
+            self.condensed.fill(self.samples.groups, bends);
+        }
+        match self.condensed.groups() {
             Some(_) => Stage::Close,
             None => Stage::Near,
         }
