@@ -106,7 +106,7 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Along a signal, from its begin.
+    /// Along a signal, from its start.
     pub fn along(times: &'a [f64], values: &'a [f64]) -> Self {
         let after = 0;
         Self {

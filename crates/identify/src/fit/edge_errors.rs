@@ -1,4 +1,4 @@
-//! What the edges of a count leave unsaid of the parameters.
+//! How uncertain the edges of a count leave the parameters.
 
 use crate::samples::{Quantity, SampleGroup};
 use windfall_numerics::least_squares::NormalEquations;
@@ -6,11 +6,11 @@ use windfall_numerics::least_squares::NormalEquations;
 /// Phases of the clock over which the errors of edges are averaged.
 const PHASES: usize = 8;
 
-/// What the edges of a count leave unsaid. An edge lies anywhere between two readings, and
-/// where in between follows from the motion: the errors of neighbours cancel or add up.
-/// Their sum is averaged over what the clock's phase might have been, each error moved on
-/// by the same part of its span. What the variance has beyond (lines beside their places)
-/// is independent.
+/// Variance of the gradient Σ w J e by the errors e of edges. An edge lies somewhere between two
+/// readings, and where follows from the motion, so that errors of neighbours cancel or add up.
+/// The square of the gradient is averaged over the phases that the clock might have had: each
+/// phase moves every error on by the same part of its span. The rest of the variance (lines
+/// that are out of place) is taken as independent.
 ///
 /// * `residuals`, `jacobian`: of the edges; the derivatives may be more than P a row, which
 ///   are then left out

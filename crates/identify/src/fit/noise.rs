@@ -91,10 +91,14 @@ pub(crate) fn noise_plan(
             edges: edges.times.len(),
             quantum: edges.quantum,
         });
-        let variances = edges.variances(&edges.speeds, 0.0);
+        let variances = edges.variances(&edges.velocities, 0.0);
         plan.noise[Quantity::Displacement as usize] = edges.typical_deviation();
-        plan.groups
-            .push(edge_group(&edges, &edges.speeds, &variances, impact.onset));
+        plan.groups.push(edge_group(
+            &edges,
+            &edges.velocities,
+            &variances,
+            impact.onset,
+        ));
         plan.edges = Some(edges);
     }
     let rest = grouped(impact, &used, options, modelled, &mut plan.noise);
@@ -103,7 +107,12 @@ pub(crate) fn noise_plan(
 }
 
 /// The edges with their errors, at these velocities and of these variances.
-fn edge_group(edges: &EdgeSamples, speeds: &[f64], variances: &[f64], onset: f64) -> SampleGroup {
+fn edge_group(
+    edges: &EdgeSamples,
+    velocities: &[f64],
+    variances: &[f64],
+    onset: f64,
+) -> SampleGroup {
     let times: Vec<f64> = edges.times.iter().map(|t| t - onset).collect();
     let mut values = [None; QUANTITIES];
     // A common scale, so that the quantity's weight is that of a typical edge.
@@ -112,7 +121,7 @@ fn edge_group(edges: &EdgeSamples, speeds: &[f64], variances: &[f64], onset: f64
     let relative: Vec<f64> = variances.iter().map(|v| typical / v).collect();
     SampleGroup::new(&times, values)
         .with_relative_weights(Quantity::Displacement, &relative)
-        .with_edges(edges.errors(speeds, variances))
+        .with_edges(edges.errors(velocities, variances))
 }
 
 /// Groups of the series that share their times; a series of persistent noise in
@@ -230,13 +239,13 @@ impl NoisePlan {
     /// the widening by the correlation left.
     ///
     /// * `rows`: residuals of the fit
-    /// * `speeds`: the fitted model's velocity at each edge; m/s
+    /// * `velocities`: the fitted model's velocity at each edge; m/s
     /// * `parameters`: number of free parameters
     pub(crate) fn recalibrated(
         &self,
         impact: &Impact,
         rows: &Rows,
-        speeds: &[f64],
+        velocities: &[f64],
         parameters: usize,
     ) -> Self {
         let mut plan = self.clone();
@@ -252,18 +261,18 @@ impl NoisePlan {
                 if quantity == Quantity::Displacement
                     && let Some(edges) = &self.edges
                 {
-                    let jitter = edges.jitter(residuals, speeds, parameters);
-                    let variances = edges.variances(speeds, jitter);
-                    group = edge_group(edges, speeds, &variances, impact.onset);
+                    let jitter = edges.jitter(residuals, velocities, parameters);
+                    let variances = edges.variances(velocities, jitter);
+                    group = edge_group(edges, velocities, &variances, impact.onset);
                     let mut scale = 1.0;
                     if residuals.len() >= ENOUGH_EDGES {
                         let before = group.weights[quantity as usize];
                         group = rescaled(group, quantity, residuals, freedom);
                         scale = before / group.weights[quantity as usize];
                     }
-                    let shared = edges.variances_of_lines(speeds, jitter);
+                    let shared = edges.variances_of_lines(velocities, jitter);
                     let shared: Vec<f64> = shared.iter().map(|v| v * scale).collect();
-                    group = edge_group(edges, speeds, &shared, impact.onset);
+                    group = edge_group(edges, velocities, &shared, impact.onset);
                     let own = (&residuals[..], &rows.jacobian[g][quantity as usize][..]);
                     let inflation = edge_inflation::<LARGEST_FREE>(&group, own, parameters);
                     group.weights[quantity as usize] /= inflation.max(LEAST_VARIANCE_RATIO);

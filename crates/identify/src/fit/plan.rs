@@ -183,11 +183,11 @@ impl Plan<'_> {
         if !self.modelled() {
             return Ok(self.noise.clone());
         }
-        let speeds = self.speeds_at_edges(first, rig)?;
+        let velocities = self.velocities_at_edges(first, rig)?;
         let count = self.free.len();
         Ok(self
             .noise
-            .recalibrated(self.impact, &first.rows, &speeds, count))
+            .recalibrated(self.impact, &first.rows, &velocities, count))
     }
 
     /// Solves once more from a solution, with the intervals that are wanted.
@@ -212,7 +212,7 @@ impl Plan<'_> {
             && self.options.noise == NoiseModel::Automatic
     }
 
-    fn speeds_at_edges(&self, solution: &Solution, rig: &Rig) -> Result<Vec<f64>, Error> {
+    fn velocities_at_edges(&self, solution: &Solution, rig: &Rig) -> Result<Vec<f64>, Error> {
         let Some(edges) = &self.noise.edges else {
             return Ok(Vec::new());
         };

@@ -27,7 +27,7 @@ const MOSTLY: f64 = 0.9;
 /// Lines of an encoder are no more accurate than this part of a count: where the impactor
 /// turns around, it accelerates by about as much between two readings; 1.
 pub(crate) const LINE_ACCURACY: f64 = 0.005;
-/// Steps to the jitter, each of which divides its error by ten or so.
+/// Steps in which the jitter settles.
 const JITTER_STEPS: usize = 10;
 
 /// Displacements at the changes of a count.
@@ -40,7 +40,7 @@ pub(crate) struct EdgeSamples {
     /// Sampling interval around each; s.
     pub intervals: Vec<f64>,
     /// Velocity there by the neighbouring edges; m/s.
-    pub speeds: Vec<f64>,
+    pub velocities: Vec<f64>,
     /// Whether the same line is passed a second time.
     pub repeated: Vec<bool>,
     /// Length of a count; m.
@@ -69,7 +69,7 @@ pub(crate) fn edge_samples(series: &Series) -> Option<EdgeSamples> {
     if share(single) < MOSTLY || share(reversals) > MOST_REVERSALS {
         return None;
     }
-    let speeds = (0..count)
+    let velocities = (0..count)
         .map(|i| {
             let (from, to) = (i.saturating_sub(1), (i + 1).min(count - 1));
             let span = found.times[to] - found.times[from];
@@ -87,25 +87,25 @@ pub(crate) fn edge_samples(series: &Series) -> Option<EdgeSamples> {
         times: found.times,
         values: found.values,
         intervals: steps.iter().map(|s| s.1).collect(),
-        speeds,
+        velocities,
         quantum,
     })
 }
 
 impl EdgeSamples {
     /// Variance of each displacement: that of its time, and `jitter`²; m².
-    pub(crate) fn variances(&self, speeds: &[f64], jitter: f64) -> Vec<f64> {
+    pub(crate) fn variances(&self, velocities: &[f64], jitter: f64) -> Vec<f64> {
         let jitter = jitter.max(LINE_ACCURACY * self.quantum);
-        let timed = self.timing_variances(speeds);
+        let timed = self.timing_variances(velocities);
         timed.map(|variance| variance + jitter * jitter).collect()
     }
 
     /// The same where lines have errors of their own, of which two passes share one: no
     /// combination of the edges has more, since for a pair of variance τ² each
     /// (τ² + 2j²) 1 − [τ² + j², j²; j², τ² + j²] is positive semidefinite.
-    pub(crate) fn variances_of_lines(&self, speeds: &[f64], jitter: f64) -> Vec<f64> {
+    pub(crate) fn variances_of_lines(&self, velocities: &[f64], jitter: f64) -> Vec<f64> {
         let square = jitter.max(LINE_ACCURACY * self.quantum).powi(2);
-        let once = self.variances(speeds, jitter).into_iter();
+        let once = self.variances(velocities, jitter).into_iter();
         once.zip(&self.repeated)
             .map(|(variance, again)| variance + if *again { square } else { 0.0 })
             .collect()
@@ -113,15 +113,15 @@ impl EdgeSamples {
 
     /// Root mean square error of an edge by its time alone; m.
     pub(crate) fn typical_deviation(&self) -> f64 {
-        let variances = self.variances(&self.speeds, 0.0);
+        let variances = self.variances(&self.velocities, 0.0);
         (variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
     }
 
     /// What is not known of each displacement, where it has these variances in all; m².
     ///
-    /// * `speeds`: velocity at each edge, signed; m/s
-    pub(crate) fn errors(&self, speeds: &[f64], variances: &[f64]) -> Vec<EdgeError> {
-        let moved = speeds.iter().zip(&self.intervals).zip(variances);
+    /// * `velocities`: velocity at each edge, signed; m/s
+    pub(crate) fn errors(&self, velocities: &[f64], variances: &[f64]) -> Vec<EdgeError> {
+        let moved = velocities.iter().zip(&self.intervals).zip(variances);
         moved
             .map(|((speed, interval), variance)| {
                 let span = speed * interval;
@@ -131,18 +131,18 @@ impl EdgeSamples {
             .collect()
     }
 
-    fn timing_variances<'a>(&'a self, speeds: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let pairs = speeds.iter().zip(&self.intervals);
+    fn timing_variances<'a>(&'a self, velocities: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let pairs = velocities.iter().zip(&self.intervals);
         pairs.map(|(speed, interval)| (speed * interval).powi(2) / 12.0)
     }
 
     /// Standard deviation of what the residuals have beyond the timing; m. Maximum likelihood of
     /// normal errors: slow edges, whose time hardly matters, say most.
-    pub(crate) fn jitter(&self, residuals: &[f64], speeds: &[f64], parameters: usize) -> f64 {
+    pub(crate) fn jitter(&self, residuals: &[f64], velocities: &[f64], parameters: usize) -> f64 {
         let count = residuals.len();
         let freedom = count as f64 / count.saturating_sub(parameters).max(1) as f64;
         let floor = (LINE_ACCURACY * self.quantum).powi(2);
-        let timed: Vec<f64> = self.timing_variances(speeds).collect();
+        let timed: Vec<f64> = self.timing_variances(velocities).collect();
         let mut jitter = floor;
         for _ in 0..JITTER_STEPS {
             let (mut beyond, mut total) = (0.0, 0.0);
@@ -160,7 +160,7 @@ impl EdgeSamples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use windfall_signal::noise::gaussian::{noise_source, uniform};
+    use windfall_signal::noise::gaussian::{noise_source, normal, uniform};
 
     fn counted(speed: f64, interval: f64, quantum: f64, samples: usize, phase: f64) -> Series {
         let times: Vec<f64> = (0..samples).map(|i| i as f64 * interval).collect();
@@ -192,7 +192,8 @@ mod tests {
                 square += (speed * time - value - 0.5 * quantum).powi(2);
                 count += 1;
             }
-            let told = edges.variances(&edges.speeds, 0.0)[20] - (LINE_ACCURACY * quantum).powi(2);
+            let told =
+                edges.variances(&edges.velocities, 0.0)[20] - (LINE_ACCURACY * quantum).powi(2);
             let expected = (speed * interval).powi(2) / 12.0;
             assert!((told / expected - 1.0).abs() < 0.2, "{told} {expected}");
         }
@@ -215,12 +216,45 @@ mod tests {
         let edges = edge_samples(&series).unwrap();
         assert_eq!(edges.repeated.iter().filter(|again| **again).count(), 20);
         let jitter = 3e-7;
-        let once = edges.variances(&edges.speeds, jitter);
-        let shared = edges.variances_of_lines(&edges.speeds, jitter);
+        let once = edges.variances(&edges.velocities, jitter);
+        let shared = edges.variances_of_lines(&edges.velocities, jitter);
         for (i, again) in edges.repeated.iter().enumerate() {
             let more = if *again { jitter * jitter } else { 0.0 };
             assert!((shared[i] - once[i] - more).abs() < 1e-20, "{i}");
         }
+    }
+
+    /// Errors of lines of 0.05 counts beside timing errors that are larger where the motion is
+    /// fast, over 20 draws; none is told where there is none.
+    #[test]
+    fn recovers_the_jitter_of_lines() {
+        let (interval, quantum, count) = (5e-6, 8.8e-6, 400);
+        let velocities: Vec<f64> = (0..count)
+            .map(|i| 0.4 - 2e-3 * f64::from(i))
+            .filter(|v| *v != 0.0)
+            .collect();
+        let edges = EdgeSamples {
+            times: vec![0.0; velocities.len()],
+            values: vec![0.0; velocities.len()],
+            intervals: vec![interval; velocities.len()],
+            repeated: vec![false; velocities.len()],
+            velocities: velocities.clone(),
+            quantum,
+        };
+        let told = |jitter: f64, seed: u64| {
+            let mut source = noise_source(seed, 0);
+            let errors = velocities.iter().map(|v| {
+                let timed = v * interval * (uniform(&mut source) - 0.5);
+                timed + jitter * normal(&mut source)
+            });
+            let errors: Vec<f64> = errors.collect();
+            edges.jitter(&errors, &velocities, 0)
+        };
+        let mean = |jitter: f64| (0..20).map(|seed| told(jitter, seed)).sum::<f64>() / 20.0;
+        let found = mean(0.05 * quantum) / quantum;
+        assert!((found / 0.05 - 1.0).abs() < 0.05, "{found}");
+        let none = mean(0.0) / quantum;
+        assert!(none < 1.5 * LINE_ACCURACY, "{none}");
     }
 
     #[test]
