@@ -8,8 +8,10 @@ import argparse
 import concurrent.futures
 import functools
 import importlib.util
+import json
 import os
 import pathlib
+import shutil
 import sys
 import tempfile
 import typing
@@ -197,67 +199,101 @@ def compared(outcome, motions):
         if impact["left_out"]:
             continue
         motion = motions[int(impact["id"][1:])]
-        for name, truth in (("k", motion[0]), ("c", motion[1])):
-            own = impact["parameters"][name]
-            errors.append(own["value"] / truth - 1)
-            held.append(own["low"] <= truth <= own["high"])
-    return np.reshape(errors, (-1, 2)), np.reshape(held, (-1, 2))
+        own = [impact["parameters"][name] for name in ("k", "c")]
+        errors.append([each["value"] / truth - 1 for each, truth in zip(own, motion, strict=False)])
+        held.append([bool(each["low"] <= truth <= each["high"]) for each, truth in zip(own, motion, strict=False)])
+    return {"errors": errors, "held": held}
+
+
+def findings(outcome):
+    return [finding for finding in outcome["findings"] if finding["code"].startswith(("bench", "law-"))]
 
 
 def campaign(program, seed, index, impacts, rigs):
+    """What one campaign says on each of the `rigs`; its noise does not depend on their number."""
     rng = np.random.default_rng((seed, index))
-    motions = []
-    for _ in range(impacts):
-        k, c, velocity = fault_impacts.drawn(rng)
-        motions.append((k, c, velocity, *fault_impacts.motion(k, c, velocity)))
+    drawn = [fault_impacts.drawn(rng) for _ in range(impacts)]
+    motions = None
     results = {}
     with tempfile.TemporaryDirectory() as scratch:
         for name in rigs:
             bench = RIGS[name]
-            folder = pathlib.Path(scratch) / name.replace(" ", "-").replace("%", "percent")
-            made = motions
+            folder = pathlib.Path(scratch) / "campaign"
             if name in LAWS:
-                made = [(*drawn, *motion_of(other_hand(), name, *drawn)) for drawn in (own[:3] for own in motions)]
-            tell = write(folder, bench, made, rng)
+                made = [(*own, *motion_of(other_hand(), name, *own)) for own in drawn]
+            else:
+                made = motions = motions or [(*own, *fault_impacts.motion(*own)) for own in drawn]
+            tell = write(folder, bench, made, np.random.default_rng((seed, index, list(RIGS).index(name))))
             plain = fault_table.fitted(program, folder)
-            own = {"plain": compared(plain, motions)}
-            said = [finding for finding in plain["findings"] if finding["code"].startswith(("bench", "law-"))]
+            said = findings(plain)
             named = [
                 finding
                 for finding in said
                 if finding["code"] in bench.codes and any(word in finding["message"] for word in bench.words)
             ]
-            own["named"] = bool(named) if bench.codes else not said
-            own["said"] = [f"{finding['code']}: {finding['message']}" for finding in said]
+            own = {
+                "plain": compared(plain, drawn),
+                "named": bool(named) if bench.codes else not said,
+                "said": [f"{finding['code']}: {finding['message']}" for finding in said],
+            }
             if bench.estimate:
                 tell()
                 better = fault_table.fitted(program, folder)
-                own["better"] = compared(better, motions)
-                own["left"] = [finding["message"] for finding in better["findings"] if finding["code"].startswith(("bench", "law-"))]
+                own["better"] = compared(better, drawn)
+                own["left"] = [finding["message"] for finding in findings(better)]
                 own["z"] = {}
                 for quantity, truth in bench.truth.items():
                     estimate = better["estimated"][quantity]
                     own["z"][quantity] = (estimate["value"] - truth) / estimate["sd"]
             results[name] = own
+            shutil.rmtree(folder)
     return results
+
+
+class Kept:
+    """Results of campaigns, one a line of a file, so that a run that stopped goes on."""
+
+    def __init__(self, path, seed, impacts):
+        self.path, self.of = path, [seed, impacts]
+        self.results = {}
+        lines = path.read_text().splitlines() if path and path.is_file() else []
+        for line in lines:
+            # The last line of a run that was killed may be cut.
+            if line.endswith("}"):
+                one = json.loads(line)
+                if one["of"] == self.of:
+                    self.add(one["index"], one["rigs"])
+
+    def add(self, index, results):
+        self.results.setdefault(index, {}).update(results)
+
+    def keep(self, index, results):
+        self.add(index, results)
+        if self.path:
+            with self.path.open("a") as file:
+                file.write(json.dumps({"of": self.of, "index": index, "rigs": results}) + "\n")
+
+    def missing(self, index, rigs):
+        return [name for name in rigs if name not in self.results.get(index, {})]
 
 
 def share(values):
     return f"{100 * np.mean(values):.1f}"
 
 
-def signed(value):
-    """Two decimals with their sign; none before zero."""
-    return f"{value:+.2f}".replace("-0.00", "0.00").replace("+0.00", "0.00").replace("-", "−")
+def signed(value, decimals=2):
+    """A number with its sign; none before zero."""
+    text = f"{value:+.{decimals}f}"
+    return (text[1:] if float(text) == 0 else text).replace("-", "−")
 
 
 def row(name, all_of):
     def errors(key):
-        per_campaign = [own[key][0].mean(axis=0) for own in all_of]
+        per_campaign = [np.mean(own[key]["errors"], axis=0) for own in all_of]
         mean = np.mean(per_campaign, axis=0)
         error = np.std(per_campaign, axis=0, ddof=1) / np.sqrt(len(per_campaign))
-        held = np.concatenate([own[key][1] for own in all_of]).mean(axis=0)
-        return [f"{signed(100 * mean[0])} ± {100 * error[0]:.2f}", f"{100 * held[0]:.1f}, {100 * held[1]:.1f}"]
+        held = np.concatenate([own[key]["held"] for own in all_of]).mean(axis=0)
+        return [f"{signed(100 * mean[0], 3)} ± {100 * error[0]:.3f}", f"{100 * held[0]:.1f}, {100 * held[1]:.1f}"]
 
     cells = [name, share([own["named"] for own in all_of])]
     cells += ["", ""] if name in LAWS else errors("plain")
@@ -278,18 +314,22 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rigs", default=",".join(RIGS))
+    parser.add_argument("--keep", type=pathlib.Path, help="file of results; campaigns that it holds are not made again")
     parser.add_argument("--said", action="store_true", help="print what the first campaign says of each bench")
     asked = parser.parse_args()
     rigs = asked.rigs.split(",")
+    kept = Kept(asked.keep, asked.seed, asked.impacts)
     with concurrent.futures.ProcessPoolExecutor(asked.jobs) as pool:
-        made = [
-            pool.submit(campaign, asked.program, asked.seed, index, asked.impacts, rigs)
-            for index in range(asked.campaigns)
-        ]
-        results = [each.result() for each in made]
+        made = {}
+        for index in range(asked.campaigns):
+            if missing := kept.missing(index, rigs):
+                made[pool.submit(campaign, asked.program, asked.seed, index, asked.impacts, missing)] = index
+        for each in concurrent.futures.as_completed(made):
+            kept.keep(made[each], each.result())
     print(f"{asked.campaigns} campaigns of {asked.impacts} impacts, seed {asked.seed}\n")
     print("| bench | named, % | k off by, % | hold k, c, % | estimated: k off by, % | hold k, c, % | quantities: z, hold, % |")
     print("|---|---|---|---|---|---|---|")
+    results = [kept.results[index] for index in range(asked.campaigns)]
     for name in rigs:
         print(row(name, [result[name] for result in results]), flush=True)
     if asked.said:
