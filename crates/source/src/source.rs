@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Place};
 use crate::stream::{is_stream, stream_bytes};
+use std::borrow::Cow;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,7 +61,10 @@ impl Source {
             bytes: Bytes::File(Arc::new(file)),
         };
         match whole.length <= SMALL {
-            true => Ok(Self::of_bytes(path, whole.head(SMALL)?.into())),
+            true => Ok(Self::of_bytes(
+                path,
+                whole.bytes_at(0, whole.length)?.into(),
+            )),
             false => Ok(whole),
         }
     }
@@ -111,25 +115,24 @@ impl Source {
         if needed > left || offset > self.length {
             return Err(self.truncated(offset, "the data here", needed));
         }
-        match &self.bytes {
+        let file = match &self.bytes {
             Bytes::Memory(bytes) => {
                 let start = (self.start + offset) as usize;
                 buffer.copy_from_slice(&bytes[start..start + buffer.len()]);
-                Ok(())
+                return Ok(());
             }
-            Bytes::File(file) => {
-                read_exact_at(file, self.start + offset, buffer).map_err(|source| {
-                    // The file has shrunk since it was opened.
-                    if source.kind() == std::io::ErrorKind::UnexpectedEof {
-                        return self.truncated(offset, "the data here", needed);
-                    }
-                    Error::Access {
-                        path: self.path.clone(),
-                        source,
-                    }
-                })
+            Bytes::File(file) => file,
+        };
+        read_exact_at(file, self.start + offset, buffer).map_err(|source| {
+            // The file has shrunk since it was opened.
+            if source.kind() == std::io::ErrorKind::UnexpectedEof {
+                return self.truncated(offset, "the data here", needed);
             }
-        }
+            Error::Access {
+                path: self.path.clone(),
+                source,
+            }
+        })
     }
 
     /// `count` bytes from `offset`, checked before allocating; errors as in [`Source::read_at`].
@@ -137,18 +140,31 @@ impl Source {
         if offset > self.length || count > self.length - offset {
             return Err(self.truncated(offset, "the data here", count));
         }
-        if let Bytes::Memory(bytes) = &self.bytes {
-            let start = (self.start + offset) as usize;
-            return Ok(bytes[start..start + count as usize].to_vec());
+        if let Some(bytes) = self.in_memory(offset, count) {
+            return Ok(bytes.to_vec());
         }
         let mut buffer = vec![0; count as usize];
         self.read_at(offset, &mut buffer)?;
         Ok(buffer)
     }
 
-    /// The first `count` bytes, or fewer if the file is shorter.
-    pub fn head(&self, count: u64) -> Result<Vec<u8>, Error> {
-        self.bytes_at(0, count.min(self.length))
+    /// The first `count` bytes, or fewer if the file is shorter; errors as in
+    /// [`Source::read_at`].
+    pub fn head(&self, count: u64) -> Result<Cow<'_, [u8]>, Error> {
+        let count = count.min(self.length);
+        match self.in_memory(0, count) {
+            Some(bytes) => Ok(bytes.into()),
+            None => Ok(self.bytes_at(0, count)?.into()),
+        }
+    }
+
+    /// Bytes that were read when the source was opened.
+    fn in_memory(&self, offset: u64, count: u64) -> Option<&[u8]> {
+        let Bytes::Memory(bytes) = &self.bytes else {
+            return None;
+        };
+        let start = (self.start + offset) as usize;
+        Some(&bytes[start..start + count as usize])
     }
 
     /// Error: `what`, at `offset`, extends beyond the end of the file.
@@ -225,10 +241,10 @@ mod tests {
         ] {
             assert_eq!(source.length(), 10);
             assert_eq!(source.bytes_at(3, 4).unwrap(), b"3456");
-            assert_eq!(source.head(99).unwrap(), b"0123456789");
+            assert_eq!(*source.head(99).unwrap(), *b"0123456789");
             let part = source.part(2, 99).part(1, 4);
             assert_eq!(part.length(), 3);
-            assert_eq!(part.head(99).unwrap(), b"345");
+            assert_eq!(*part.head(99).unwrap(), *b"345");
             let beyond = part.bytes_at(2, 2).unwrap_err().to_string();
             assert!(beyond.contains("at byte 5"), "{beyond}");
             assert_eq!(source.part(11, 5).length(), 0);

@@ -87,7 +87,10 @@ pub fn simulate_rig(
         let mut summary = ImpactSummary::default();
         let separation = follow_fast(&event, 0.0, duration, &mut |segment, piece| {
             if piece == Piece::Contact {
-                tally(&event, segment, &mut summary);
+                fast(
+                    #[inline(always)]
+                    || tally(&event, segment, &mut summary),
+                );
             }
         })?;
         if let Some(separation) = separation {
@@ -126,7 +129,10 @@ pub fn trajectory(
         acceleration: zeros,
     };
     follow_fast(&event, first.min(0.0), last, &mut |segment, piece| {
-        read(&event, segment, piece, last, &mut out);
+        fast(
+            #[inline(always)]
+            || read(&event, segment, piece, last, &mut out),
+        );
     })?;
     Ok(out)
 }
@@ -162,36 +168,22 @@ fn event(law: &Law, rig: &Rig, velocity: f64, end: EndRule) -> Result<Event, Err
     })
 }
 
-/// [`follow`], compiled for the machine's vector instructions: without them each fused
-/// multiplication and addition is a call.
+/// Work compiled for the machine's vector instructions: without them each fused
+/// multiplication and addition is a call. `work` and what it calls must be `#[inline(always)]`.
+fn fast<T>(work: impl FnOnce() -> T) -> T {
+    pulp::Arch::new().dispatch(work)
+}
+
 fn follow_fast(
     event: &Event,
     before: f64,
     after: f64,
     sink: &mut impl FnMut(&Segment<1>, Piece),
 ) -> Result<Option<Separation>, StepError> {
-    pulp::Arch::new().dispatch(Follow {
-        event,
-        before,
-        after,
-        sink,
-    })
-}
-
-struct Follow<'a, F> {
-    event: &'a Event,
-    before: f64,
-    after: f64,
-    sink: &'a mut F,
-}
-
-impl<F: FnMut(&Segment<1>, Piece)> pulp::WithSimd for Follow<'_, F> {
-    type Output = Result<Option<Separation>, StepError>;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Self::Output {
-        follow(self.event, self.before, self.after, self.sink)
-    }
+    fast(
+        #[inline(always)]
+        || follow(event, before, after, sink),
+    )
 }
 
 fn complete(
@@ -252,11 +244,15 @@ fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
     let end = sigma_of(segment, segment.to);
     let state = |sigma: f64| state_at(event, segment, sigma);
 
-    let grid: [State; SEARCH_POINTS + 1] = std::array::from_fn(|i| state(point(end, i)));
+    let (mut forces, mut depths) = ([0.0; SEARCH_POINTS + 1], [0.0; SEARCH_POINTS + 1]);
+    for i in 0..=SEARCH_POINTS {
+        let state = state(point(end, i));
+        (forces[i], depths[i]) = (state.force, state.x);
+    }
 
     // The force's maximum may be at first touch, where some laws jump.
     let force = highest_on(
-        (end, grid.map(|state| state.force)),
+        (end, forces),
         |sigma| state(sigma).force,
         |sigma| state(sigma).force_rate,
     );
@@ -266,7 +262,7 @@ fn tally(event: &Event, segment: &Segment<1>, summary: &mut ImpactSummary) {
         summary.time_of_peak_force = peak.time;
     }
     let deepest = highest_on(
-        (end, grid.map(|state| state.x)),
+        (end, depths),
         |sigma| state(sigma).x,
         |sigma| state(sigma).v,
     );
