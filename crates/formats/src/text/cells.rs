@@ -14,9 +14,7 @@ pub struct Cells<'a> {
 
 impl<'a> Cells<'a> {
     pub fn new(lines: &[&'a str], separator: Separator) -> Self {
-        let mut all = Vec::with_capacity(lines.len());
-        let mut starts = Vec::with_capacity(lines.len() + 1);
-        starts.push(0);
+        let (mut all, mut starts) = (Vec::with_capacity(lines.len()), vec![0]);
         for line in lines {
             push_cells(line, separator, &mut all);
             starts.push(all.len());

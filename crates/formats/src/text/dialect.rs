@@ -177,9 +177,7 @@ fn best_candidate<'a>(
         .chain(options.separator.filter(|s| !SEPARATORS.contains(s)));
     let occurs = |own: Separator| match own {
         Separator::Mark(mark) => lines.iter().any(|line| line.as_bytes().contains(&mark)),
-        Separator::Blanks => lines
-            .iter()
-            .any(|line| line.trim().contains(char::is_whitespace)),
+        Separator::Blanks => true,
     };
     // Marks that divide no line all leave the same cells.
     let mut undivided = false;
