@@ -21,6 +21,7 @@ mod guide;
 mod http;
 mod identification;
 mod inputs;
+mod joint;
 mod kinds;
 mod known;
 mod library;

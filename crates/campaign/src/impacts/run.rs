@@ -16,6 +16,7 @@ use crate::recording::request::{RecordingRequest, campaign_of_file};
 use crate::result::bench::{bench_findings, far_estimates, pooled_bench};
 use crate::result::counted::mark_left_out;
 use crate::result::given::given_findings;
+use crate::result::joint::{joint_findings, joint_fits};
 use crate::result::outcome::{BenchOutcome, CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::stacked::law_misfits;
 use crate::result::summary::{summarise, summarise_groups};
@@ -149,7 +150,11 @@ fn fit(
         rig: &rig,
     };
     let mut evaluated = evaluate(&fits, reuse, progress)?;
-    let outcome = outcome_of(&fits, &mut evaluated);
+    let mut outcome = outcome_of(&fits, &mut evaluated);
+    if request.joint {
+        outcome.joint = joint_fits(&outcome.impacts);
+        outcome.findings.extend(joint_findings(&outcome.joint));
+    }
     let digests = evaluated.digests;
     if let Some(folder) = &request.figures {
         draw(&campaign, &rig, &outcome, folder)?;
@@ -318,6 +323,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         failed: std::mem::take(&mut evaluated.failed),
         summary,
         groups,
+        joint: Vec::new(),
         findings,
     }
 }

@@ -5,12 +5,12 @@ use crate::impacts::groups::{
     SOURCES, derived_tables, groups_of, heading_of, law_table, parameter_table, restitution_table,
 };
 use crate::result::counted::reasons_counted;
-use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
+use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome, JointOutcome};
 use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use std::fmt::Write;
 use windfall_files::text::number::{plain, value_and_sd};
-use windfall_files::text::table::{page_tables, paragraph, title_lines};
+use windfall_files::text::table::{header_of, page_tables, paragraph, title_lines};
 
 /// More impacts than this are shown as groups only.
 const LISTED_IMPACTS: usize = 40;
@@ -72,6 +72,7 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
             let _ = writeln!(text, "{}", paragraph(&line, 2));
         }
     }
+    text += &joint_table(outcome, law, &impacts);
     text += &restitution_table(&impacts);
     if impacts.len() > LISTED_IMPACTS {
         let n = impacts.len();
@@ -182,6 +183,28 @@ pub fn common_line(outcome: &CampaignOutcome, groups: &[&GroupOutcome]) -> Optio
             parts.join(", ")
         )
     })
+}
+
+/// One law for each specimen.
+fn joint_table(outcome: &CampaignOutcome, law: &str, impacts: &[&ImpactOutcome]) -> String {
+    let joint: Vec<&JointOutcome> = outcome.joint.iter().filter(|own| own.law == law).collect();
+    let Some(first) = joint.first() else {
+        return String::new();
+    };
+    let mut header = header_of(&["specimen", "impacts"]);
+    let names = first.parameters.names();
+    header.extend(names.map(|name| heading_of(impacts, name)));
+    header.extend(header_of(&["χ²/df", "p"]));
+    let rows = joint.iter().map(|own| {
+        let estimates = own.parameters.0.iter();
+        let counts = [own.specimen.clone(), own.impacts.len().to_string()];
+        let values = estimates.map(|(_, own)| value_and_sd(own.value, own.sd));
+        let reduced = own.chi_square / own.freedom as f64;
+        let tests = [format!("{reduced:.2}"), format!("{:.3}", own.p)];
+        counts.into_iter().chain(values).chain(tests).collect()
+    });
+    let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
+    format!("\nOne law for all impacts on a specimen (± standard deviation):\n{table}\n")
 }
 
 /// Laws in order of first appearance.

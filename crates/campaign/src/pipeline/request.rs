@@ -83,6 +83,9 @@ pub struct FitRequest {
     /// Column of specimens.csv or impacts.csv by which results are grouped
     #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN"))]
     pub group: Option<String>,
+    /// Estimate one law for all impacts on a specimen, too
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub joint: bool,
     /// Fit every impact again, even where nothing has changed
     #[cfg_attr(feature = "clap", arg(id = "refit", long, action = clap::ArgAction::SetTrue, value_parser = refit()))]
     pub reuse: Reuse,
@@ -378,6 +381,7 @@ pub fn apply_request_to_measurement(
         ("--laws", request.laws_file.is_some()),
         ("--card", request.card.is_some()),
         ("--detail", request.detail.is_some()),
+        ("--joint", request.joint),
         ("--prior", !request.priors.is_empty()),
         ("--bounds", !request.bounds.is_empty()),
         ("--quantities", !request.quantities.is_empty()),

@@ -5,6 +5,7 @@ pub mod counted;
 pub mod fit_outcome;
 pub mod given;
 pub mod interval_outcome;
+pub mod joint;
 pub mod outcome;
 pub mod quantity;
 pub mod stacked;

@@ -130,6 +130,32 @@ pub struct GroupOutcome {
     pub derived: Named<SpreadOutcome>,
 }
 
+/// Parameters that all impacts on one specimen share.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
+pub struct JointOutcome {
+    /// Id of the specimen.
+    pub specimen: String,
+    /// Name of the law.
+    pub law: String,
+    /// Ids of the impacts.
+    pub impacts: Vec<String>,
+    /// Parameters that were estimated, in the order of the law.
+    pub parameters: Named<EstimateOutcome>,
+    /// Correlations of the estimates without what is common to all impacts: "k, c".
+    pub correlations: Named<f64>,
+    /// What one standard uncertainty of each quantity of the bench and each prior adds to each
+    /// estimate; part of their deviations.
+    pub common: Named<Named<f64>>,
+    /// Sum of the squares of the impacts' departures from them, in their deviations; 1.
+    pub chi_square: f64,
+    /// Its degrees of freedom.
+    pub freedom: usize,
+    /// Probability of as much by chance.
+    pub p: f64,
+    /// Factor on the deviations, where impacts differ by more than chance; 1.
+    pub scale: f64,
+}
+
 /// How the results came about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct StatusOutcome {
@@ -242,6 +268,9 @@ pub struct CampaignOutcome {
     pub summary: Named<SpreadOutcome>,
     /// Spread per group and law.
     pub groups: Vec<GroupOutcome>,
+    /// One law for all impacts on a specimen, where that was asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joint: Vec<JointOutcome>,
     /// What a reader of the whole must know.
     pub findings: Vec<FindingOutcome>,
 }

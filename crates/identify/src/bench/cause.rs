@@ -63,8 +63,9 @@ fn of_one_kind(impacts: &[BenchResiduals]) -> Vec<BenchResiduals> {
 /// ```
 ///
 /// with the whitened residuals r of impact i, what a fault β of the bench adds to them, d, and
-/// the projection P off what the parameters of the fit explain. Deviations come from the scatter
-/// from impact to impact. Empty with fewer than five impacts.
+/// the projection P off what the parameters of the fit explain. Deviations are the larger of
+/// what the scatter from impact to impact gives, which a few impacts may decide, and what the size
+/// of the residuals does. Empty with fewer than five impacts.
 ///
 /// # Source
 /// Golub and Pereyra (1973), SIAM J. Numer. Anal. 10:413 (variable projection).
@@ -103,7 +104,7 @@ pub fn likeliest_causes(impacts: &[BenchResiduals], causes: &[Cause]) -> Vec<Cau
         .into_iter()
         .map(|(cause, found, fault)| {
             let sd = |i: usize| match cause.free()[i] {
-                true => found.covariance[i][i].max(0.0).sqrt(),
+                true => found.scatter[i].max(scale * found.white[i]).sqrt(),
                 false => 0.0,
             };
             let swing = fault

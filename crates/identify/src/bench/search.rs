@@ -4,6 +4,8 @@ use crate::bench::kind::{Cause, MOST};
 use crate::bench::residuals::{BenchFault, BenchResiduals};
 use windfall_numerics::least_squares::{Bounds, LeastSquares, NormalEquations, Options, minimise};
 
+/// Impacts at most on which starts are tried.
+const TRIED: usize = 12;
 /// Step of the derivatives, in the coordinate of each parameter.
 const STEP: f64 = 1e-4;
 /// Frequencies tried, from so many swings in a contact up; and how they rise.
@@ -30,7 +32,10 @@ pub(crate) struct Search<'a> {
 pub(crate) struct Found {
     pub parameters: [f64; MOST],
     pub cost: f64,
-    pub covariance: [[f64; MOST]; MOST],
+    /// Squared deviations of the parameters by how much the estimate moves without each impact.
+    pub scatter: [f64; MOST],
+    /// The same where residuals are white and of one size, over their squares; 1.
+    pub white: [f64; MOST],
 }
 
 impl Search<'_> {
@@ -66,17 +71,18 @@ impl Search<'_> {
         sums
     }
 
-    /// Sum of squares; 1.
-    fn cost(&self, at: &[f64; MOST]) -> f64 {
+    /// Sum of squares over every so many impacts; 1.
+    fn cost(&self, at: &[f64; MOST], every: usize) -> f64 {
         let fault = self.fault(at);
         let of = |own: &BenchResiduals| own.with(&fault).iter().map(|r| r * r).sum::<f64>();
-        self.impacts.iter().map(of).sum()
+        self.impacts.iter().step_by(every).map(of).sum()
     }
 
     /// The lowest minimum from several starts.
     pub(crate) fn solve(&mut self) -> Option<Found> {
         let (bounds, starts) = (self.bounds(), self.starts());
-        let costs = starts.iter().map(|start| (self.cost(start), start));
+        let every = self.impacts.len().div_ceil(TRIED);
+        let costs = starts.iter().map(|start| (self.cost(start, every), start));
         let start = costs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|own| *own.1)?;
         let options = Options {
             cost_tolerance: 1e-7,
@@ -89,10 +95,12 @@ impl Search<'_> {
         if !minimum.equations.cost.is_finite() {
             return None;
         }
+        let (scatter, white) = self.deviations(&at)?;
         Some(Found {
             parameters: at,
-            cost: self.cost(&at),
-            covariance: self.scatter(&at)?,
+            cost: self.cost(&at, 1),
+            scatter,
+            white,
         })
     }
 
@@ -144,12 +152,13 @@ impl Search<'_> {
         starts
     }
 
-    /// Covariance by how far the estimate moves without each impact.
+    /// Squared deviations by how far the estimate moves without each impact, and for white
+    /// residuals of size 1.
     ///
     /// # Source
     /// Bell and McCaffrey (2002), Survey Methodology 28:169, the jackknife over clusters (CR3),
     /// with (n − 1)/n; the move is that of one Gauss-Newton step.
-    fn scatter(&self, at: &[f64; MOST]) -> Option<[[f64; MOST]; MOST]> {
+    fn deviations(&self, at: &[f64; MOST]) -> Option<([f64; MOST], [f64; MOST])> {
         let each = self.impacts.iter().map(|own| self.equations_of(own, at));
         let each: Vec<NormalEquations<MOST>> = each.collect();
         let mut all = NormalEquations::<MOST>::ZERO;
@@ -166,7 +175,7 @@ impl Search<'_> {
             }
         }
         let share = 1.0 - 1.0 / each.len() as f64;
-        let mut covariance = [[0.0; MOST]; MOST];
+        let mut scatter = [0.0; MOST];
         for own in &each {
             let mut others = all;
             for i in 0..MOST {
@@ -181,13 +190,12 @@ impl Search<'_> {
                     .map(|(a, b)| a * b)
                     .sum::<f64>()
             });
-            for i in 0..MOST {
-                for j in 0..MOST {
-                    covariance[i][j] += share * moved[i] * moved[j];
-                }
+            for (scatter, moved) in scatter.iter_mut().zip(moved) {
+                *scatter += share * moved * moved;
             }
         }
-        Some(covariance)
+        let white = all.inverse(MOST)?;
+        Some((scatter, std::array::from_fn(|i| white[i][i])))
     }
 }
 

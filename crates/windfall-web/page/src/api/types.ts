@@ -32,7 +32,7 @@ export interface CampaignOutcome {
   windfall: string; campaign: string; simulated: string | null; effective_mass: MassOutcome;
   bench: Record<string, PooledOutcome>; estimated: Record<string, BenchOutcome>; trends: TrendOutcome[];
   status: StatusOutcome; impacts: ImpactOutcome[]; failed: FailureOutcome[]; summary: Record<string, SpreadOutcome>;
-  groups: GroupOutcome[]; findings: FindingOutcome[];
+  groups: GroupOutcome[]; joint: JointOutcome[]; findings: FindingOutcome[];
 }
 export interface CampaignView {
   id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
@@ -183,6 +183,11 @@ export type JobView = JobWork & ({
   job: string; campaign: string; state: JobState; done: number; all: number; problem: string | null; command: string;
 });
 export type JobWork = { result: AnyOutcome | null; work: "fit"; } | { result: LawsOutcome | null; work: "laws"; } | { result: PopulationOutcome | null; work: "population"; } | { result: CalibrateOutcome | null; work: "calibrate"; } | { result: ReportFiles | null; work: "report"; };
+export interface JointOutcome {
+  specimen: string; law: string; impacts: string[]; parameters: Record<string, EstimateOutcome>;
+  correlations: Record<string, number>; common: Record<string, Record<string, number>>; chi_square: number;
+  freedom: number; p: number; scale: number;
+}
 export interface LackOfFitOutcome { lack: AnovaOutcome; pure_error: SumOfSquares; }
 export interface LawAbout { name: string; formula: string; parameters: ParameterAbout[]; notes: string; }
 export interface LawEvidenceOutcome {
