@@ -79,6 +79,9 @@ class Record:
             rows = rows[self.kept]
         volts = self.force[rows] * SENSITIVITY
         counts = np.floor(self.position[rows]).astype(int)
+        if path.suffix == ".npy":
+            np.save(path, np.rec.fromarrays([volts, counts], names="force_V,count"))
+            return
         if self.timed:
             columns = [rows / RATE, volts, counts]
             head, form = "time_s,force_V,count", ["%.7f", "%.7g", "%d"]

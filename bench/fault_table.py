@@ -48,7 +48,7 @@ group = "variety"
 """
 
 
-def write_campaign(folder, records, threshold, inertia=fault_impacts.INERTIA):
+def write_campaign(folder, records, threshold, inertia=fault_impacts.INERTIA, ending="csv"):
     """The records of one fault and strength; those with times are a campaign of their own."""
     (folder / "raw").mkdir(parents=True)
     first = records[0][1]
@@ -66,8 +66,8 @@ def write_campaign(folder, records, threshold, inertia=fault_impacts.INERTIA):
     (folder / "campaign.toml").write_text(text)
     impacts, specimens = ["id,specimen,file"], ["id,variety"]
     for name, record in records:
-        record.write(folder / "raw" / f"{name}.csv")
-        impacts.append(f"{name},{name},{name}.csv")
+        record.write(folder / "raw" / f"{name}.{ending}")
+        impacts.append(f"{name},{name},{name}.{ending}")
         specimens.append(f"{name},one")
     (folder / "impacts.csv").write_text("\n".join(impacts) + "\n")
     (folder / "specimens.csv").write_text("\n".join(specimens) + "\n")

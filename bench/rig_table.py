@@ -185,7 +185,7 @@ def write(folder, bench, motions, rng):
     made = [fault_impacts.Record(*recorded(motion, bench.instrument, rng), motion[0], motion[2]) for motion in motions]
     records = [(f"i{index:03d}", record) for index, record in enumerate(made)]
     inertia = fault_impacts.INERTIA * bench.told.get("inertia", 1.0)
-    fault_table.write_campaign(folder, records, "1 N", inertia)
+    fault_table.write_campaign(folder, records, "1 N", inertia, "npy")
     path = folder / "campaign.toml"
     plain = path.read_text()
     asked = ", ".join(f'"{name}"' for name in bench.estimate)
