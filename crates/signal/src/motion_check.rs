@@ -12,8 +12,11 @@ use std::ops::Range;
 /// Free motion on either side of the contact that is compared too; contact durations.
 const SIDES: f64 = 0.5;
 
-/// Fewest samples of the force in contact, and fewest edges of a count.
+/// Samples of each in contact from which an impact says something by itself, and fewest edges of
+/// a count.
 const LEAST_SAMPLES: usize = 20;
+/// Fewest samples of the force in contact: straight lines between them miss (h/T)² of it.
+const LEAST_FORCES: usize = 10;
 /// Fewest samples of the displacement in contact. With those of the free motion on either side
 /// they are about twice as many as the coefficients.
 const LEAST_PLACES: usize = 6;
@@ -37,8 +40,8 @@ pub struct MotionCheck {
     pub misfit: f64,
     /// What the noise of the displacement, or the timing of its counts, leaves of it; m.
     pub noise: f64,
-    /// Whether the displacement has so few samples in contact that many such impacts say
-    /// something together, and none by itself.
+    /// Whether one of them has so few samples in contact that many such impacts say something
+    /// together, and none by itself.
     pub sparse: bool,
 }
 
@@ -57,7 +60,7 @@ pub struct MotionCheck {
 /// * `mass`: what the contact accelerates; kg
 /// * `response`: what the instruments make of both; the bending of an arm counts as at rest
 ///
-/// `None` with fewer than twenty samples of the force or six of the displacement in contact, or
+/// `None` with fewer than ten samples of the force or six of the displacement in contact, or
 /// where they do not determine the coefficients.
 pub(crate) fn check_motion(
     (force, displacement): (&Track, &Track),
@@ -73,12 +76,12 @@ pub(crate) fn check_motion(
     let within = |times: &[f64], from: f64, until: f64| {
         times.partition_point(|&t| t < from)..times.partition_point(|&t| t <= until)
     };
-    for (track, least) in [(force, LEAST_SAMPLES), (displacement, LEAST_PLACES)] {
-        if within(&track.times, place.onset, place.end).len() < least {
-            return None;
-        }
+    let inside = |track: &Track| within(&track.times, place.onset, place.end).len();
+    let (forces, places) = (inside(force), inside(displacement));
+    if forces < LEAST_FORCES || places < LEAST_PLACES {
+        return None;
     }
-    let sparse = within(&displacement.times, place.onset, place.end).len() < LEAST_SAMPLES;
+    let sparse = forces.min(places) < LEAST_SAMPLES;
     let part = within(&displacement.times, from, until);
     let (times, places, noise) = exact(displacement, part);
     let (times, places) = (&times[..], &places[..]);
