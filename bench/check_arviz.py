@@ -1,5 +1,6 @@
 """R-hat and independent draws by ArviZ against those of windfall; called by check-arviz."""
 
+import json
 import subprocess
 import sys
 import tempfile
@@ -16,7 +17,7 @@ program = str(Path(sys.argv[1]).resolve())
 law = "kuwabara-kono(k=394931,c=681)"
 failed = False
 with tempfile.TemporaryDirectory() as folder:
-    simulate = ["simulate", "pendulum", "--law", law, "--specimens", "2", "--recordings", "campaign"]
+    simulate = ["simulate", "pendulum", "--law", law, "--specimens", "6", "--repeats", "2", "--recordings", "campaign"]
     fit = ["fit", "campaign", "--intervals", "posterior", "--detail", "fits"]
     for line in (simulate, fit):
         subprocess.run([program, *line], cwd=folder, check=True, stdout=subprocess.DEVNULL)
@@ -34,6 +35,11 @@ with tempfile.TemporaryDirectory() as folder:
                 told = float(data.constant_data[name].sel(parameter=parameter))
                 worst[name] = max(worst[name], abs(told / float(own[parameter]) - 1.0))
     assert files, "no file was written"
+    population = ["population", "campaign", "--posterior", "--detail", "draws.json", "--format", "json"]
+    told = subprocess.run([program, *population], cwd=folder, check=True, capture_output=True, text=True)
+    r_hat = arviz.rhat(arviz.from_json(str(Path(folder, "draws.json"))))
+    largest = max(float(r_hat[name].max()) for name in r_hat.data_vars)
+    worst["r_hat"] = max(worst["r_hat"], abs(json.loads(told.stdout)["posterior"]["largest_r_hat"] / largest - 1.0))
     for name, difference in worst.items():
         good = bool(np.isfinite(difference)) and difference <= TOLERANCE[name]
         failed |= not good

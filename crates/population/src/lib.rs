@@ -2,6 +2,7 @@
 
 pub mod card;
 pub mod covariates;
+pub mod detail;
 pub mod outcome;
 pub mod ranking;
 pub mod run;

@@ -2,11 +2,13 @@
 //! covariates.
 
 use crate::covariates::find_covariates;
+use crate::detail::draws_document;
 use crate::outcome::{
     FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,
     population_of, posterior_outcome, two_stage_outcome,
 };
 use rayon::prelude::*;
+use serde_json::Value;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -16,7 +18,7 @@ use windfall_campaign::impacts::card::add_outer;
 use windfall_campaign::impacts::fit::{impacts_and_left_out, law_problem};
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::pipeline::evaluate::failure;
-use windfall_campaign::pipeline::request::{FitRequest, apply_request};
+use windfall_campaign::pipeline::request::{FitRequest, Reuse, apply_request};
 use windfall_campaign::recording::extract::extract_recording;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::result::summary::common_moves;
@@ -28,7 +30,7 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
-use windfall_files::write_file::check_outputs;
+use windfall_files::write_file::{check_outputs, write_whole};
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::population::finding::PopulationFinding;
 use windfall_identify::population::fit::fit_population;
@@ -53,6 +55,8 @@ pub struct PopulationRequest {
     /// Whether the posterior is drawn beside the estimate: chains, draws and seed
     /// as of the campaign's intervals.
     pub posterior: bool,
+    /// Where the posterior's draws are written.
+    pub detail: Option<PathBuf>,
     /// Where a law card of the population is written.
     pub card: Option<PathBuf>,
 }
@@ -77,7 +81,7 @@ pub fn population(
     progress: Progress,
 ) -> Result<PopulationOutcome, Error> {
     let mut campaign = read_campaign(&request.directory)?;
-    check_outputs([request.card.as_deref()])?;
+    check_outputs([request.card.as_deref(), request.detail.as_deref()])?;
     apply_request(&mut campaign, &request.fit)?;
     if !request.covariates.is_empty() {
         campaign.covariates.clone_from(&request.covariates);
@@ -91,20 +95,34 @@ pub fn population(
             command: "population",
             options: format!("posterior: {}", request.posterior),
         };
-        let work = || estimate(&campaign, &rig, request.posterior, progress);
-        let (mut outcome, told) = answer(&question, request.fit.reuse, work)?;
+        let mut draws = None;
+        let work = || {
+            let (outcome, own) = estimate(&campaign, &rig, request.posterior, progress)?;
+            draws = own;
+            Ok(outcome)
+        };
+        // Draws are not kept with the answer: the same seed draws them again.
+        let reuse = match request.detail {
+            Some(_) => Reuse::Nothing,
+            None => request.fit.reuse,
+        };
+        let (mut outcome, told) = answer(&question, reuse, work)?;
+        if let (Some(path), Some(draws)) = (&request.detail, draws) {
+            write_whole(path, format!("{draws}\n").as_bytes())?;
+        }
         outcome.findings.extend(told);
         outcome.findings.extend(priors);
         Ok(outcome)
     })
 }
 
+/// The population, with the draws of its posterior if these are wanted.
 fn estimate(
     campaign: &ImpactCampaign,
     rig: &RigFound,
     posterior: bool,
     progress: Progress,
-) -> Result<PopulationOutcome, Error> {
+) -> Result<(PopulationOutcome, Option<Value>), Error> {
     let law = &campaign.fit.laws[0];
     let problem = law_problem(law, &campaign.fit);
     let mut first = campaign.clone();
@@ -167,7 +185,9 @@ fn estimate(
     let remarks = posterior.iter().flat_map(|posterior| posterior.findings());
     findings.extend(remarks.map(|finding| population_finding(&finding)));
     let method = "REML, Laplace";
-    Ok(PopulationOutcome {
+    let draws = posterior.as_ref();
+    let draws = draws.map(|found| draws_document(found, &fit, &varying));
+    let outcome = PopulationOutcome {
         windfall: VERSION.to_owned(),
         campaign: campaign.shared.title.clone(),
         simulated: campaign.shared.simulated.clone(),
@@ -188,7 +208,8 @@ fn estimate(
         posterior: posterior.map(|found| posterior_outcome(&found, &fit, &varying)),
         findings,
         failed,
-    })
+    };
+    Ok((outcome, draws))
 }
 
 /// Adds what is uncertain of the bench to the medians of all fruit, undivided.

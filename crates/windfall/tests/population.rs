@@ -8,7 +8,7 @@ use windfall_campaign::pipeline::request::FitRequest;
 use windfall_contact::expression::parse_law;
 use windfall_contact::law::EndRule;
 use windfall_identify::rig::kind::{Pendulum, Rig};
-use windfall_population::outcome::PopulationOutcome;
+use windfall_population::outcome::{PopulationOutcome, PopulationPosteriorOutcome};
 use windfall_population::run::{PopulationRequest, population};
 use windfall_population::text::{csv_of_population, text_of_population};
 use windfall_signal::instrument::pendulum_instrument;
@@ -168,8 +168,9 @@ fn recovers_the_fruit_that_were_drawn() {
 }
 
 /// The posterior of the same campaign: around the estimate, its intervals as wide;
-/// drawn again, the same.
+/// drawn again, the same, and its draws are those that the ranges are of.
 fn check_posterior(directory: &Path, estimate: &PopulationOutcome) {
+    let file = directory.with_file_name("draws.json");
     let drawn = |threads: usize| {
         let request = PopulationRequest {
             directory: directory.to_path_buf(),
@@ -179,6 +180,8 @@ fn check_posterior(directory: &Path, estimate: &PopulationOutcome) {
                 ..FitRequest::default()
             },
             posterior: true,
+            // Not from the store.
+            detail: Some(file.clone()),
             ..PopulationRequest::default()
         };
         population(&request, &windfall_files::progress::quiet).unwrap()
@@ -203,5 +206,41 @@ fn check_posterior(directory: &Path, estimate: &PopulationOutcome) {
             .unwrap()
             .contains("posterior,sd_between,k,,")
     );
+    let first = std::fs::read_to_string(&file).unwrap();
     assert_eq!(drawn(1).posterior.as_ref(), Some(posterior));
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), first);
+    check_draws(&serde_json::from_str(&first).unwrap(), posterior);
+}
+
+/// Four chains of 400 draws, whose medians are those of the outcome.
+fn check_draws(file: &serde_json::Value, posterior: &PopulationPosteriorOutcome) {
+    assert_eq!(file["coords"]["parameter"], serde_json::json!(["k", "c"]));
+    assert_eq!(file["coords"]["pair"], serde_json::json!(["k, c"]));
+    let median = |name: &str, i: usize| {
+        let chains = file["posterior"][name].as_array().unwrap();
+        assert_eq!(chains.len(), 4, "{name}");
+        let mut draws: Vec<f64> = chains
+            .iter()
+            .flat_map(|chain| chain.as_array().unwrap())
+            .map(|draw| draw[i].as_f64().unwrap())
+            .collect();
+        assert_eq!(draws.len(), 1600, "{name}");
+        draws.sort_by(f64::total_cmp);
+        (draws[799], draws[800])
+    };
+    let of = [
+        ("median", &posterior.medians),
+        ("sd_between", &posterior.between),
+        ("sd_within", &posterior.within),
+        ("correlation_between", &posterior.between_correlations),
+        ("correlation_within", &posterior.within_correlations),
+    ];
+    for (name, ranges) in of {
+        assert_eq!(file["dims"][name].as_array().unwrap().len(), 1, "{name}");
+        for (i, range) in ranges.iter().enumerate() {
+            let (low, high) = median(name, i);
+            assert!((low..=high).contains(&range.value), "{name} {i}");
+        }
+    }
+    assert!(file["posterior"].get("effect").is_none());
 }

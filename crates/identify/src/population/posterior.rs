@@ -46,6 +46,9 @@ pub struct PopulationPosterior {
     pub between: PosteriorVariation,
     /// Of the impacts of one fruit.
     pub within: PosteriorVariation,
+    /// All draws, chain after chain, of each quantity: effects, then standard deviations and
+    /// correlations between fruit, then within.
+    pub draws: Vec<Vec<f64>>,
     /// What was drawn.
     pub drawing: Drawing,
     /// Draws at which the sampler diverged.
@@ -141,7 +144,7 @@ pub fn population_posterior(
     });
     let divergences = divergences.ok_or(Error::NoPopulation)?;
     let tail = 0.5 * (1.0 - options.confidence);
-    let mut ranges = drawn.into_iter().map(|mut all| PosteriorRange {
+    let mut ranges = drawn.iter().cloned().map(|mut all| PosteriorRange {
         mixing: mixing(&all, drawing.draws),
         median: quantile(&mut all, 0.5),
         low: quantile(&mut all, tail),
@@ -161,6 +164,7 @@ pub fn population_posterior(
         effects,
         between: variation(Some(&hierarchy.between)),
         within: variation(hierarchy.within.as_ref()),
+        draws: drawn.clone(),
         drawing: *drawing,
         divergences,
         not_followed: hierarchy.often_lost(),

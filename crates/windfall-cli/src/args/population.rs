@@ -21,7 +21,7 @@ Exit status: 0 when the population was estimated, 1 when the impacts do not allo
 Examples:
   windfall population my-campaign
   windfall population my-campaign --covariate 'log(impact_velocity)' --covariate variety
-  windfall population my-campaign --posterior
+  windfall population my-campaign --posterior --detail draws.json
   windfall population my-campaign --law hunt-crossley --format json"
 )]
 pub struct PopulationArguments {
@@ -46,6 +46,9 @@ pub struct PopulationArguments {
     /// Seed of the posterior's draws (1)
     #[arg(long, value_name = "N", requires = "posterior")]
     pub seed: Option<u64>,
+    /// Write the posterior's draws as JSON for arviz.from_json; draws them anew
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "posterior")]
+    pub detail: Option<PathBuf>,
     /// Write the population as a law card (TOML, or JSON where the name ends with .json)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub card: Option<PathBuf>,

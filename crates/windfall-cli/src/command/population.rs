@@ -29,6 +29,7 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         },
         covariates: arguments.covariates.clone(),
         posterior: arguments.posterior,
+        detail: arguments.detail.clone(),
         card: arguments.card.clone(),
     };
     let outcome = with_bar(|progress| population(&request, progress)).map_err(tell_failures)?;

@@ -96,6 +96,13 @@ pub const WRITTEN: &[Output] = &[
     ),
     (
         "population",
+        "--detail",
+        Kind::File,
+        "population campaign --posterior --draws 20 --detail {}",
+        CAMPAIGN,
+    ),
+    (
+        "population",
         "--card",
         Kind::File,
         "population campaign --card {}",
