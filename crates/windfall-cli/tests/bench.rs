@@ -128,6 +128,22 @@ fn closed_form_an_uncertain_inertia_is_in_every_interval_and_not_averaged_out() 
     assert!(relative >= 0.019, "{relative}");
 }
 
+/// A displacement that is λ times as long at the same times is that of k and c over √λ.
+#[test]
+fn closed_form_an_eccentric_encoder_scales_all_displacements_alike() {
+    let folder = campaign();
+    tell(
+        folder.path(),
+        "[encoder]\n",
+        "[encoder]\neccentricity = \"2 %\"\n",
+    );
+    let (k, c, common) = deviations(&fitted(folder.path()));
+    let expected = 0.5 * 0.02 / 2f64.sqrt();
+    for own in [k, c, common.unwrap()] {
+        assert!((own / expected - 1.0).abs() < 0.08, "{own} {expected}");
+    }
+}
+
 #[test]
 fn recovers_inertia_gain_and_delay_that_are_asked_for() {
     let estimate = |folder: &Path, names: &str| {
@@ -244,6 +260,11 @@ fn rejects_what_the_bench_cannot_tell() {
             "[contact]\n",
             "[contact]\npre_trigger = \"2 ± 1 ms\"\n",
             "takes no ±",
+        ),
+        (
+            "[encoder]\n",
+            "[encoder]\neccentricity = \"20 %\"\n",
+            "by more than a tenth",
         ),
         (
             "[contact]\n",

@@ -141,9 +141,7 @@ pub fn bench_findings(
     let clear = |name: &str, perfect: f64| {
         let own = bench.get(name)?;
         let told = match name {
-            "force_gain" => known
-                .relative_mass(rig)
-                .hypot(known.of(BenchQuantity::ForceGain)),
+            "force_gain" => known.relative_push(rig),
             _ => known.of(BenchQuantity::ForceDelay),
         };
         let room = (CLEAR * own.sd).max(DEVIATIONS * told);

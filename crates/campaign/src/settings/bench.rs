@@ -2,12 +2,16 @@
 
 use crate::settings::file::CampaignFile;
 use crate::settings::model::{BenchPlan, ChannelPlan, MassPlan, RigPlan};
+use toml::Spanned;
 use windfall_files::error::Error;
-use windfall_files::text::toml_source::{TomlSource, refused};
+use windfall_files::text::toml_source::{Needed, TomlSource, positive_quantity, refused};
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_signal::recording::Quantity;
 
 const KEY: (&str, &str) = ("[fit]", "estimate");
+
+/// Largest eccentricity of an encoder; 1.
+const LARGEST_ECCENTRICITY: f64 = 0.1;
 
 /// Quantities that recordings determine: one of the first three, the delay, and one of the
 /// last three, with what belongs to it.
@@ -47,7 +51,16 @@ pub fn bench_plan(
     let force = channels
         .iter()
         .find(|plan| plan.quantity == Quantity::Force);
+    let displacement = channels
+        .iter()
+        .filter(|plan| matches!(plan.quantity, Quantity::Displacement | Quantity::Angle))
+        .map(|plan| plan.scale_sd);
+    let eccentric = eccentricity(source, file)? / std::f64::consts::SQRT_2;
     let mut sd = sd
+        .with(
+            BenchQuantity::DisplacementGain,
+            displacement.fold(eccentric, f64::hypot),
+        )
         .with(
             BenchQuantity::ForceGain,
             force.map_or(0.0, |plan| plan.scale_sd),
@@ -83,6 +96,28 @@ pub fn bench_plan(
         estimate,
         found: Vec::new(),
     })
+}
+
+/// How far an encoder's disc is off its axis, in radii of its lines: near one angle its counts are
+/// longer or shorter by at most that part, and by this part over √2 at an angle that is not known.
+fn eccentricity(source: &TomlSource, file: &CampaignFile) -> Result<f64, Error> {
+    let encoder = file.encoder.as_ref().map(Spanned::get_ref);
+    let given = encoder.and_then(|encoder| encoder.eccentricity.as_ref());
+    let key = Needed {
+        table: "[encoder]",
+        key: "eccentricity",
+        meaning: "distance of the disc's centre from the axis, over the radius of its lines",
+        unit: "1",
+        example: "eccentricity = \"0.1 %\"",
+    };
+    let value = positive_quantity(source, given, &key)?.unwrap_or(0.0);
+    match given {
+        Some(given) if value > LARGEST_ECCENTRICITY => {
+            let problem = "counts that differ by more than a tenth are no scale";
+            Err(refused(source, given, (key.table, key.key), problem))
+        }
+        _ => Ok(value),
+    }
 }
 
 /// Why a quantity cannot be told on a rig, beside those that are estimated already.

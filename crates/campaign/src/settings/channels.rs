@@ -206,10 +206,10 @@ fn sensitivity_value(
 /// A value and its standard uncertainty as a part of it.
 type Scale = (f64, f64);
 
-/// A value with the uncertainty behind it, which only a force may have; SI.
+/// A value with the uncertainty behind it, which only a force, a position or an angle may have; SI.
 fn parse_known(text: &str, unit: &str, kind: &Kind) -> Result<(f64, f64), UnitError> {
     match kind.quantity {
-        Quantity::Force => {
+        Quantity::Force | Quantity::Displacement | Quantity::Angle => {
             parse_uncertain(text, unit).map(|(value, sd)| (value, sd.unwrap_or(0.0)))
         }
         _ => Ok((parse_as(text, unit)?, 0.0)),

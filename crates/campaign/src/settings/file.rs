@@ -204,6 +204,8 @@ pub struct EncoderFile {
     pub counts_per_revolution: Option<Spanned<f64>>,
     /// Displacement per count, for a wheel or a linear scale.
     pub count_length: Option<Spanned<QuantityText>>,
+    /// Distance of its disc from the axis, over the radius of the lines.
+    pub eccentricity: Option<Spanned<QuantityText>>,
     /// What the times beside decoded counts mean: "sampled" or "events".
     pub times: Option<Spanned<String>>,
 }

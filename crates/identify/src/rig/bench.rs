@@ -6,7 +6,7 @@ use windfall_signal::impact::Impact;
 use windfall_signal::response::Response;
 
 /// Number of quantities.
-const QUANTITIES: usize = 12;
+const QUANTITIES: usize = 13;
 
 /// A quantity of the bench that may be uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -21,6 +21,8 @@ pub enum BenchQuantity {
     CentreOfMass,
     /// What the force reads over what it is; 1.
     ForceGain,
+    /// What the displacement reads over what it is; 1.
+    DisplacementGain,
     /// Time by which the force comes later than the displacement; s.
     ForceDelay,
     /// Corner of a filter of first order that the force passes; Hz.
@@ -45,6 +47,7 @@ impl BenchQuantity {
         Self::Mass,
         Self::CentreOfMass,
         Self::ForceGain,
+        Self::DisplacementGain,
         Self::ForceDelay,
         Self::ForceFilter,
         Self::SensorFrequency,
@@ -62,6 +65,7 @@ impl BenchQuantity {
             Self::Mass => "mass",
             Self::CentreOfMass => "centre_of_mass",
             Self::ForceGain => "force.gain",
+            Self::DisplacementGain => "displacement.gain",
             Self::ForceDelay => "force.delay",
             Self::ForceFilter => "force_filter",
             Self::SensorFrequency => "sensor_frequency",
@@ -78,7 +82,9 @@ impl BenchQuantity {
             Self::Inertia => "kg m^2",
             Self::Arm | Self::CentreOfMass => "m",
             Self::Mass => "kg",
-            Self::ForceGain | Self::SensorDamping | Self::ArmDamping => "1",
+            Self::ForceGain | Self::DisplacementGain | Self::SensorDamping | Self::ArmDamping => {
+                "1"
+            }
             Self::ForceDelay => "s",
             Self::ForceFilter | Self::SensorFrequency | Self::ArmFrequency => "Hz",
             Self::ArmCompliance => "m/N",
@@ -106,7 +112,7 @@ impl BenchQuantity {
             (Self::Mass, Rig::Pendulum(own)) => own.mass,
             (Self::CentreOfMass, Rig::Pendulum(own)) => own.centre_of_mass,
             (Self::Mass, Rig::Carriage(own)) => own.mass,
-            (Self::ForceGain, _) => 1.0,
+            (Self::ForceGain | Self::DisplacementGain, _) => 1.0,
             _ => 0.0,
         }
     }
@@ -148,13 +154,21 @@ impl BenchSd {
         }
     }
 
+    /// The same of mass × acceleration of the displacement, over the force; 1.
+    pub fn relative_push(&self, rig: &Rig) -> f64 {
+        let gains = [BenchQuantity::ForceGain, BenchQuantity::DisplacementGain];
+        let gains = gains.into_iter().map(|own| self.of(own));
+        gains.fold(self.relative_mass(rig), f64::hypot)
+    }
+
     /// The same of the kinetic energy: where the displacement is as long as the arm, the arm
     /// cancels; 1.
     pub fn relative_energy(&self, rig: &Rig) -> f64 {
-        match rig {
+        let mass = match rig {
             Rig::Pendulum(own) if self.turns => self.of(BenchQuantity::Inertia) / own.inertia,
             _ => self.relative_mass(rig),
-        }
+        };
+        mass.hypot(2.0 * self.of(BenchQuantity::DisplacementGain))
     }
 
     /// Quantities that are uncertain, and by how much.
@@ -178,8 +192,9 @@ impl BenchSd {
                 series.values.iter_mut().for_each(|value| *value *= factor);
             }
         };
-        // Mass × acceleration of the displacement, over what it was; what the force is, likewise.
-        let (mut push, mut force) = (1.0, 1.0);
+        // Mass × acceleration of the displacement, over what it was; what the force is, likewise,
+        // and the displacement.
+        let (mut push, mut force, mut way) = (1.0, 1.0, 1.0);
         match (quantity, &mut rig) {
             (BenchQuantity::Inertia, Rig::Pendulum(own)) => {
                 push = 1.0 + step / own.inertia;
@@ -191,10 +206,7 @@ impl BenchSd {
                 push = 1.0 / (factor * factor);
                 if self.turns {
                     push = 1.0 / factor;
-                    scale(&mut impact.displacement, factor);
-                    scale(&mut impact.rate, factor);
-                    let velocity = &mut impact.measured.impact_velocity;
-                    *velocity = velocity.map(|own| own * factor);
+                    way = factor;
                 }
             }
             (BenchQuantity::Mass, Rig::Pendulum(own)) => own.mass += step,
@@ -204,6 +216,10 @@ impl BenchSd {
                 own.mass += step;
             }
             (BenchQuantity::ForceGain, _) => force = 1.0 / (1.0 + step),
+            (BenchQuantity::DisplacementGain, _) => {
+                way = 1.0 / (1.0 + step);
+                push = way;
+            }
             (BenchQuantity::ForceDelay, _) => {
                 if let Some(force) = &mut impact.force {
                     force.times.iter_mut().for_each(|time| *time -= step);
@@ -221,6 +237,15 @@ impl BenchSd {
         }
         if force != 1.0 {
             scale(&mut impact.force, force);
+        }
+        if way != 1.0 {
+            scale(&mut impact.displacement, way);
+            // A velocity beside a displacement that does not turn has a sensor of its own.
+            if self.turns {
+                scale(&mut impact.rate, way);
+            }
+            let velocity = &mut impact.measured.impact_velocity;
+            *velocity = velocity.map(|own| own * way);
         }
         (impact, rig)
     }

@@ -98,7 +98,7 @@ pub const WRITTEN: &[Output] = &[
         "population",
         "--detail",
         Kind::File,
-        "population campaign --posterior --draws 20 --detail {}",
+        "population campaign --posterior --draws 100 --detail {}",
         CAMPAIGN,
     ),
     (
