@@ -7,6 +7,7 @@
 mod box_quadratic;
 pub mod cholesky;
 pub mod double_double;
+pub mod fast;
 pub mod least_squares;
 pub mod normal_equations;
 pub mod ode;

@@ -5,6 +5,7 @@ use crate::finding::Finding;
 use crate::linear_fit::linear_fit;
 use crate::track::{Track, mean_interval};
 use windfall_numerics::cholesky::SINGULAR;
+use windfall_numerics::fast::fast;
 
 /// Steps on either side with which each is compared.
 const NEIGHBOURS: usize = 10;
@@ -113,9 +114,11 @@ fn small_jump(track: &Track, times: &[f64], values: &[f64], duration: f64) -> Op
         let least = ROWS * speed * interval;
         let (times, values) = (&points[begin..end], &places[begin..end]);
         let place = |t: f64| (t - at) / (NEAR * duration);
-        if step_between(times, values, i + 1 - begin, place)
-            .is_some_and(|size| size.abs() < NEARLY * least)
-        {
+        let step = fast(
+            #[inline(always)]
+            || step_between(times, values, i + 1 - begin, place),
+        );
+        if step.is_some_and(|size| size.abs() < NEARLY * least) {
             return None;
         }
         let fit = linear_fit(times, values, |t| {
@@ -135,6 +138,7 @@ fn small_jump(track: &Track, times: &[f64], values: &[f64], duration: f64) -> Op
 ///
 /// * `before`: points before the step
 /// * `place`: u of a time
+#[inline(always)]
 fn step_between(
     times: &[f64],
     values: &[f64],

@@ -1,6 +1,7 @@
 //! Least-squares polynomials over short stretches of a signal.
 
 use std::ops::Range;
+use windfall_numerics::fast::fast;
 
 /// Highest order that the routines of this module take.
 pub const MAX_ORDER: usize = 4;
@@ -180,10 +181,18 @@ fn near_end(
     Some(times[at].iter().map(of).collect())
 }
 
+fn slide(weights: &[f64], values: &[f64], level: bool, out: &mut Vec<f64>) {
+    fast(
+        #[inline(always)]
+        || slide_along(weights, values, level, out),
+    );
+}
+
 /// Sums of weighted samples in a window that slides along them.
 ///
 /// * `level`: whether the weights give a value, not a derivative
-fn slide(weights: &[f64], values: &[f64], level: bool, out: &mut Vec<f64>) {
+#[inline(always)]
+fn slide_along(weights: &[f64], values: &[f64], level: bool, out: &mut Vec<f64>) {
     let half = weights.len() / 2;
     let places = values.len() + 1 - weights.len();
     let mut at = 0;

@@ -9,6 +9,7 @@ use crate::rig::motion::Motion;
 use windfall_contact::law::{ContactLaw, EndRule, SMALLEST_DISPLACEMENT};
 use windfall_contact::laws::any_law::{AnyLaw, LARGEST_PARAMETERS};
 use windfall_contact::laws::kind::Law;
+use windfall_numerics::fast::fast;
 use windfall_numerics::ode::step::{StepError, Tolerance};
 use windfall_numerics::quadrature::EIGHT_NODES;
 use windfall_numerics::root::bracketed_root;
@@ -166,12 +167,6 @@ fn event(law: &Law, rig: &Rig, velocity: f64, end: EndRule) -> Result<Event, Err
             absolute: [ACCURACY * 1e-6, ACCURACY * velocity],
         },
     })
-}
-
-/// Work compiled for the machine's vector instructions: without them each fused
-/// multiplication and addition is a call. `work` and what it calls must be `#[inline(always)]`.
-fn fast<T>(work: impl FnOnce() -> T) -> T {
-    pulp::Arch::new().dispatch(work)
 }
 
 fn follow_fast(
