@@ -5,7 +5,7 @@ use crate::inputs::check_regular;
 use crate::write_file::{give_new_name, partial_of, sweep};
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::OnceLock;
 
 /// Longest name of a file that is taken; bytes. Half of what file systems take, so
@@ -100,6 +100,9 @@ pub fn also_read(directories: Vec<PathBuf>) {
 pub fn named_file(directory: &Path, name: &str, within: &Path) -> Result<PathBuf, String> {
     let path = directory.join(name);
     check_regular(&path).map_err(|error| error.to_string())?;
+    if plainly_inside(within, &path) {
+        return Ok(path);
+    }
     let Ok(found) = path.canonicalize() else {
         return Ok(path);
     };
@@ -123,6 +126,19 @@ pub fn named_file(directory: &Path, name: &str, within: &Path) -> Result<PathBuf
          meant to be read; put it beside the file that names it, or allow that directory: \
          --also-read {folder}"
     ))
+}
+
+/// Whether a file lies below a folder by its name, with no link on the way.
+fn plainly_inside(folder: &Path, path: &Path) -> bool {
+    let Ok(rest) = path.strip_prefix(folder) else {
+        return false;
+    };
+    let mut at = folder.to_path_buf();
+    rest.components().all(|part| {
+        at.push(part);
+        let plain = |found: std::fs::Metadata| !found.is_symlink();
+        matches!(part, Component::Normal(_)) && at.symlink_metadata().is_ok_and(plain)
+    })
 }
 
 /// [`named_file`] by a file whose own folder is where it must lie.

@@ -241,6 +241,7 @@ fn rejects_what_the_bench_cannot_tell() {
     for (old, new, said) in [
         ("kg m^2\"", "kg m^2 ± 0.0002\"", "has no unit"),
         ("kg m^2\"", "kg m^2 ± -1 %\"", "is negative"),
+        ("kg m^2\"", "kg m^2 ± 200 %\"", "uncertainty of 200 %"),
         (
             "[fit]\n",
             "[fit]\nestimate = [\"arm\"]\n",

@@ -1,6 +1,6 @@
 //! Answers on a campaign as a whole (a comparison of laws, a population), kept in its store.
 
-use crate::impacts::key::impact_key;
+use crate::impacts::key::{CommonKey, impact_key};
 use crate::impacts::mass::RigFound;
 use crate::pipeline::request::Reuse;
 use crate::recording::digests::recording_digests;
@@ -82,12 +82,13 @@ fn key(question: &Question) -> Option<String> {
     let campaign = question.campaign;
     let shared = &campaign.shared;
     let digests = recording_digests(&shared.directory, &shared.files, &shared.entries);
+    let common = CommonKey::of(campaign, &question.rig.rig);
     let mut impacts = Vec::new();
     for entry in &shared.entries {
         let digest = digests.get(&recording_path(&shared.files, entry))?;
         let digest = digest.as_ref().ok()?;
         for law in &campaign.fit.laws {
-            impacts.push(impact_key(campaign, entry, law, &question.rig.rig, digest));
+            impacts.push(impact_key(campaign, entry, law, &common, digest));
         }
     }
     let everything = json!({

@@ -1,7 +1,7 @@
 //! Recording → impact → fits of the laws.
 
 use crate::impacts::failed_fit::{found_before, why_it_failed};
-use crate::impacts::key::{impact_key, run_options};
+use crate::impacts::key::{CommonKey, impact_key, run_options};
 use crate::impacts::mass::RigFound;
 use crate::pipeline::evaluate::{Evaluation, evaluate, failure};
 use crate::recording::extract::extract_recording;
@@ -27,6 +27,20 @@ pub struct Fits<'a> {
     pub campaign: &'a ImpactCampaign,
     /// Its rig.
     pub rig: &'a RigFound,
+    /// What the keys of all fits have in common.
+    common: CommonKey,
+}
+
+impl<'a> Fits<'a> {
+    /// Of a campaign on its rig.
+    pub fn new(campaign: &'a ImpactCampaign, rig: &'a RigFound) -> Self {
+        let common = CommonKey::of(campaign, &rig.rig);
+        Self {
+            campaign,
+            rig,
+            common,
+        }
+    }
 }
 
 impl Evaluation for Fits<'_> {
@@ -42,7 +56,7 @@ impl Evaluation for Fits<'_> {
 
     fn key(&self, entry: &ImpactEntry, part: usize, recording: &str) -> String {
         let law = &self.campaign.fit.laws[part];
-        impact_key(self.campaign, entry, law, &self.rig.rig, recording)
+        impact_key(self.campaign, entry, law, &self.common, recording)
     }
 
     /// The recording is read only if one of the laws is new.
@@ -96,7 +110,7 @@ pub fn impacts_and_left_out(
     rig: &RigFound,
     progress: Progress,
 ) -> Result<(Vec<ImpactOutcome>, Vec<FailureOutcome>), Error> {
-    let evaluated = evaluate(&Fits { campaign, rig }, None, progress)?;
+    let evaluated = evaluate(&Fits::new(campaign, rig), None, progress)?;
     let items = evaluated.items.into_iter();
     let mut impacts: Vec<ImpactOutcome> = items.map(|(_, impact)| impact).collect();
     let shared = &campaign.shared;

@@ -9,6 +9,29 @@ use windfall_files::provenance::{REVISION, digest_text};
 use windfall_identify::fit::problem::Known;
 use windfall_identify::rig::kind::Rig;
 
+/// What the keys of all impacts of a campaign have in common, as JSON.
+pub struct CommonKey {
+    contact: String,
+    fit: String,
+    open: String,
+    rig: String,
+    time_scale: String,
+}
+
+impl CommonKey {
+    /// Of a campaign on its rig.
+    pub fn of(campaign: &ImpactCampaign, rig: &Rig) -> Self {
+        let files = &campaign.shared.files;
+        Self {
+            contact: json!(campaign.contact).to_string(),
+            fit: json!(campaign.fit.options).to_string(),
+            open: json!(format!("{:?}", files.open)).to_string(),
+            rig: json!(format!("{rig:?}")).to_string(),
+            time_scale: json!(format!("{:?}", files.time_scale)).to_string(),
+        }
+    }
+}
+
 /// SHA-256 over everything that the fit of one law to one impact depends on.
 ///
 /// * `digest`: SHA-256 of the recording
@@ -19,7 +42,7 @@ pub fn impact_key(
     campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     law: &LawExpression,
-    rig: &Rig,
+    common: &CommonKey,
     digest: &str,
 ) -> String {
     let filled = |text: &str| fill_placeholders(text, &entry.cells).unwrap_or_default();
@@ -59,23 +82,33 @@ pub fn impact_key(
         .filter(|(kind, _)| *kind == law.kind)
         .map(|(_, known)| known)
         .collect();
-    let everything = json!({
-        "revision": REVISION,
-        "recording": digest,
-        "impact": [entry.id, entry.specimen, entry.file],
-        "range": format!("{:?} {:?}", entry.from, entry.to),
-        "rig": format!("{rig:?}"),
-        "open": format!("{:?}", campaign.shared.files.open),
-        "time_scale": format!("{:?}", campaign.shared.files.time_scale),
-        "channels": channels,
-        "contact": campaign.contact,
-        "angles": format!("{:?}", angles_of_entry(campaign, entry).ok()),
-        "law": format!("{:?}", law),
-        "free": free,
-        "known": format!("{known:?}"),
-        "fit": campaign.fit.options,
-    });
-    digest_text(&everything.to_string())
+    let everything = [
+        (
+            "angles",
+            json!(format!("{:?}", angles_of_entry(campaign, entry).ok())).to_string(),
+        ),
+        ("channels", json!(channels).to_string()),
+        ("contact", common.contact.clone()),
+        ("fit", common.fit.clone()),
+        ("free", json!(free).to_string()),
+        (
+            "impact",
+            json!([entry.id, entry.specimen, entry.file]).to_string(),
+        ),
+        ("known", json!(format!("{known:?}")).to_string()),
+        ("law", json!(format!("{law:?}")).to_string()),
+        ("open", common.open.clone()),
+        (
+            "range",
+            json!(format!("{:?} {:?}", entry.from, entry.to)).to_string(),
+        ),
+        ("recording", json!(digest).to_string()),
+        ("revision", json!(REVISION).to_string()),
+        ("rig", common.rig.clone()),
+        ("time_scale", common.time_scale.clone()),
+    ];
+    let pairs = everything.map(|(name, text)| format!("\"{name}\":{text}"));
+    digest_text(&format!("{{{}}}", pairs.join(",")))
 }
 
 /// Options of a run beside campaign.toml: what was fitted in the end.

@@ -145,10 +145,7 @@ fn fit(
 ) -> Result<FittedCampaign, Error> {
     request.check_outputs()?;
     let rig = find_rig(&mut campaign)?;
-    let fits = Fits {
-        campaign: &campaign,
-        rig: &rig,
-    };
+    let fits = Fits::new(&campaign, &rig);
     let mut evaluated = evaluate(&fits, reuse, progress)?;
     let mut outcome = outcome_of(&fits, &mut evaluated);
     if request.joint {

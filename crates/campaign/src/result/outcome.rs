@@ -269,7 +269,7 @@ pub struct CampaignOutcome {
     /// Spread per group and law.
     pub groups: Vec<GroupOutcome>,
     /// One law for all impacts on a specimen, where that was asked for.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub joint: Vec<JointOutcome>,
     /// What a reader of the whole must know.
     pub findings: Vec<FindingOutcome>,

@@ -23,6 +23,9 @@ pub const FROM_IMPULSE: &str = "from impulse";
 
 const TABLE: &str = "[rig]";
 
+/// Largest uncertainty of a quantity above zero, as a part of it; 1.
+const LARGEST_UNCERTAINTY: f64 = 0.3;
+
 const KIND: Needed = Needed::of(
     TABLE,
     "kind",
@@ -227,6 +230,14 @@ fn positive(
     match (value, known) {
         (Some(value), Some((number, _))) if number <= 0.0 => {
             let problem = format!("must be above zero, for example: {}", needed.example);
+            Err(refused(source, value, (needed.table, needed.key), problem))
+        }
+        (Some(value), Some((number, sd))) if sd > LARGEST_UNCERTAINTY * number => {
+            let problem = format!(
+                "an uncertainty of {:.0} % is more than the fits can follow (30 %): measure it, or \
+                 have it estimated with `[fit] estimate`",
+                100.0 * sd / number
+            );
             Err(refused(source, value, (needed.table, needed.key), problem))
         }
         (_, Some(known)) => Ok(known),
