@@ -1,5 +1,6 @@
 //! What the report of a campaign of impacts says.
 
+use crate::figures::bench::figure_of_bench;
 use crate::figures::covariate::{covariates_of, figure_of_covariate};
 use crate::figures::parameters::{
     estimated_parameters, figure_of_pairs, figure_of_predictions, groups_of_impacts,
@@ -66,6 +67,13 @@ pub fn sections_of_campaign(
         sections.push(Section {
             figures: figures.collect(),
             ..Section::of_words(&format!("Figures: {law}"), Vec::new())
+        });
+    }
+    let first = laws_of(outcome).first().map(|law| of_law(outcome, law));
+    if let Some(figure) = first.and_then(|impacts| figure_of_bench(outcome, &impacts)) {
+        sections.push(Section {
+            figures: vec![figure],
+            ..Section::of_words("Figure: bench", Vec::new())
         });
     }
     sections.push(examples(campaign, rig, outcome)?);

@@ -102,6 +102,12 @@ fn replaces_its_own_files_only() {
     let table = read(&figure.with_extension("csv"));
     let impacts = table.lines().filter(|l| l.contains(",apple,")).count();
     assert_eq!(impacts, 20);
+    // Gain and delay of each, of all groups.
+    let bench = read(&out.join("figures").join("bench.csv"));
+    assert_eq!(
+        bench.lines().filter(|l| l.contains(",impacts,")).count(),
+        40
+    );
 
     windfall(&["report", &directory, "--out", &name, "--theme", "dark"]).success();
     assert!(read(&figure.with_extension("svg")).contains("fill=\"#14171a\""));
