@@ -106,7 +106,7 @@ fn replaces_its_own_files_only() {
     let bench = read(&out.join("figures").join("bench.csv"));
     assert_eq!(
         bench.lines().filter(|l| l.contains(",impacts,")).count(),
-        40
+        160
     );
 
     windfall(&["report", &directory, "--out", &name, "--theme", "dark"]).success();
