@@ -9,7 +9,8 @@ use windfall_files::provenance::{REVISION, digest_text};
 use windfall_identify::fit::problem::Known;
 use windfall_identify::rig::kind::Rig;
 
-/// What the keys of all impacts of a campaign have in common, as JSON.
+/// What the keys of all impacts of a campaign have in common, as JSON: written once, since
+/// writing it takes longer than the digest.
 pub struct CommonKey {
     contact: String,
     fit: String,
@@ -82,6 +83,7 @@ pub fn impact_key(
         .filter(|(kind, _)| *kind == law.kind)
         .map(|(_, known)| known)
         .collect();
+    // An object with its names in alphabetical order.
     let everything = [
         (
             "angles",

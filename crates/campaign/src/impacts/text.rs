@@ -200,7 +200,11 @@ fn joint_table(outcome: &CampaignOutcome, law: &str, impacts: &[&ImpactOutcome])
         let counts = [own.specimen.clone(), own.impacts.len().to_string()];
         let values = estimates.map(|(_, own)| value_and_sd(own.value, own.sd));
         let reduced = own.chi_square / own.freedom as f64;
-        let tests = [format!("{reduced:.2}"), format!("{:.3}", own.p)];
+        let p = match own.p < 0.001 {
+            true => "< 0.001".to_owned(),
+            false => format!("{:.3}", own.p),
+        };
+        let tests = [format!("{reduced:.2}"), p];
         counts.into_iter().chain(values).chain(tests).collect()
     });
     let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);

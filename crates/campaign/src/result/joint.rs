@@ -92,29 +92,32 @@ fn joint_fit(law: &str, specimen: &str, impacts: &[&ImpactOutcome]) -> Option<Jo
         }
     });
     let sd = |i: usize| scale * covariance[i][i].sqrt();
-    let estimates = parameters().enumerate().map(|(i, (name, first))| {
-        let shifts = common.0.iter().filter_map(|(_, own)| own.get(name));
-        let shift = shifts.map(|shift| shift * shift).sum::<f64>().sqrt();
-        let reach = (quantile * sd(i)).hypot(normal_upper_quantile(0.025) * shift);
-        let alike = impacts.iter().all(|own| {
-            own.parameters
-                .get(name)
-                .is_some_and(|own| own.unit == first.unit)
-        });
-        let estimate = EstimateOutcome {
-            value: value[i],
-            sd: Some(sd(i).hypot(shift)),
-            low: Some(value[i] - reach),
-            high: Some(value[i] + reach),
-            unit: if alike {
-                first.unit.clone()
-            } else {
-                String::new()
-            },
-            held: false,
-        };
-        (name.clone(), estimate)
-    });
+    let estimates: Named<EstimateOutcome> = parameters()
+        .enumerate()
+        .map(|(i, (name, first))| {
+            let shifts = common.0.iter().filter_map(|(_, own)| own.get(name));
+            let shift = shifts.map(|shift| shift * shift).sum::<f64>().sqrt();
+            let reach = (quantile * sd(i)).hypot(normal_upper_quantile(0.025) * shift);
+            let alike = impacts.iter().all(|own| {
+                own.parameters
+                    .get(name)
+                    .is_some_and(|own| own.unit == first.unit)
+            });
+            let estimate = EstimateOutcome {
+                value: value[i],
+                sd: Some(sd(i).hypot(shift)),
+                low: Some(value[i] - reach),
+                high: Some(value[i] + reach),
+                unit: if alike {
+                    first.unit.clone()
+                } else {
+                    String::new()
+                },
+                held: false,
+            };
+            (name.clone(), estimate)
+        })
+        .collect();
     let pairs = (0..size).array_combinations().map(|[i, j]| {
         let correlation = covariance[i][j] / (covariance[i][i] * covariance[j][j]).sqrt();
         (format_smolstr!("{}, {}", names[i], names[j]), correlation)
@@ -123,9 +126,9 @@ fn joint_fit(law: &str, specimen: &str, impacts: &[&ImpactOutcome]) -> Option<Jo
         specimen: specimen.to_owned(),
         law: law.to_owned(),
         impacts: impacts.iter().map(|own| own.id.clone()).collect(),
-        parameters: estimates.collect(),
+        parameters: estimates,
         correlations: pairs.collect(),
-        common: common.clone(),
+        common,
         chi_square,
         freedom,
         p,
@@ -223,8 +226,14 @@ fn dot(left: &Vector, right: &Vector) -> f64 {
     left.iter().zip(right).map(|(a, b)| a * b).sum()
 }
 
-/// Whether the impacts on single specimens agree with one law each.
+/// Whether the impacts on single specimens agree with one law each, or no specimen has two.
 pub fn joint_findings(joint: &[JointOutcome]) -> Vec<FindingOutcome> {
+    if joint.is_empty() {
+        let told = "no specimen has two impacts that count and whose deviations are known: there is \
+                    nothing to fit jointly. Impacts on one specimen have its id in the column \
+                    `specimen` of impacts.csv";
+        return vec![FindingOutcome::new("joint-without-repeats", told)];
+    }
     let laws = grouped(joint.iter().map(|own| (own.law.as_str(), own)));
     let findings = laws.into_iter().filter_map(|(law, own)| {
         let chi_square: f64 = own.iter().map(|own| own.chi_square).sum();
