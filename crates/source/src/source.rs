@@ -158,11 +158,15 @@ impl Source {
         }
     }
 
-    /// Bytes that were read when the source was opened.
-    fn in_memory(&self, offset: u64, count: u64) -> Option<&[u8]> {
+    /// Bytes that were read when the source was opened; `None` where they were not, or lie
+    /// beyond its end.
+    pub fn in_memory(&self, offset: u64, count: u64) -> Option<&[u8]> {
         let Bytes::Memory(bytes) = &self.bytes else {
             return None;
         };
+        if count > self.length.checked_sub(offset)? {
+            return None;
+        }
         let start = (self.start + offset) as usize;
         Some(&bytes[start..start + count as usize])
     }

@@ -126,10 +126,10 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        10,
+        11,
         [
-            "add718a00caeb5eb",
-            "e6be9b409addacb1",
+            "5a0f7b3b5a85a114",
+            "4070e0dc1233e619",
             "0d9a7fd3ea4b6a51",
             "362e0649b943bd49",
             "3e453baf43c8c589",

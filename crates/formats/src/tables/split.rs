@@ -104,9 +104,9 @@ fn stacked(
     // Where the next table begins, and its rows so far.
     let mut next: Option<(u64, u64)> = Some((0, 0));
     let (mut at, mut line, mut rows) = (mark, 0, 0);
+    let mut buffer = Vec::new();
     for index in 0..stretches(&lines) {
-        let bytes = stretch(source, &lines, index)?;
-        let mut rest = &bytes[..];
+        let mut rest = stretch(source, &lines, index, &mut buffer)?;
         while !rest.is_empty() {
             let end = memchr::memchr(lines.newline, rest).map_or(rest.len(), |end| end + 1);
             let text;

@@ -2,7 +2,7 @@
 
 use crate::contents::Note;
 use crate::reader::Sink;
-use crate::text::lines::{Lines, stretch, stretch_in, stretches};
+use crate::text::lines::{Lines, stretch, stretches};
 use crate::text::midnight::Clock;
 use crate::text::missing::{MissingCells, add_missing};
 use crate::text::rows::{Column, Fault, RowPlan, Rows, most_rows, read_rows};
@@ -97,12 +97,12 @@ pub fn read_table(
         let end = (start + batch).min(count);
         let read: Vec<Result<Read, Error>> = (start..end)
             .into_par_iter()
-            .map(|index| {
-                let bytes = stretch(source, &table.lines, index)?;
-                let mut room = vec![vec![0.0; most_rows(&bytes, &table.plan)]; wanted.len()];
+            .map_init(Vec::new, |buffer, index| {
+                let bytes = stretch(source, &table.lines, index, buffer)?;
+                let mut room = vec![vec![0.0; most_rows(bytes, &table.plan)]; wanted.len()];
                 let mut columns: Vec<Column> =
                     room.iter_mut().map(|room| Column::new(room)).collect();
-                let rows = read_rows(&bytes, &table.plan, &places, &mut columns);
+                let rows = read_rows(bytes, &table.plan, &places, &mut columns);
                 Ok((room, rows))
             })
             .collect();
@@ -147,7 +147,7 @@ pub fn read_whole_table(
     let lengths: Vec<usize> = (0..count)
         .into_par_iter()
         .map_init(Vec::new, |buffer, index| {
-            let bytes = stretch_in(source, &table.lines, index, buffer)?;
+            let bytes = stretch(source, &table.lines, index, buffer)?;
             Ok(most_rows(bytes, &table.plan))
         })
         .collect::<Result<_, Error>>()?;
@@ -170,7 +170,7 @@ pub fn read_whole_table(
         .into_par_iter()
         .enumerate()
         .map_init(Vec::new, |buffer, (index, mut rooms)| {
-            let bytes = stretch_in(source, &table.lines, index as u64, buffer)?;
+            let bytes = stretch(source, &table.lines, index as u64, buffer)?;
             Ok(read_rows(bytes, &table.plan, &places, &mut rooms))
         })
         .collect::<Result<_, Error>>()?;

@@ -26,6 +26,10 @@ use windfall_signal::impact::Impact;
 /// Factors of stiffness and damping tried when the first start fails.
 const OTHER_STARTS: [(f64, f64); 4] = [(0.3, 1.0), (3.0, 1.0), (1.0, 0.2), (1.0, 3.0)];
 
+/// How much closer the fit comes that only shows the noise, which may end before the minimum
+/// for instantaneous samples; weights, and with them the cost, follow its last digits.
+const SMOOTH_CLOSER: f64 = 0.01;
+
 /// Everything decided before the minimiser runs.
 pub(crate) struct Plan<'a> {
     pub(crate) impact: &'a Impact,
@@ -273,15 +277,18 @@ impl Plan<'_> {
         let no_start = Error::NoStart {
             law: description.name,
         };
+        // Samples are weighted by the residuals of the smooth minimum, found more closely.
+        let smooth = matches!(wanted, Wanted::Residuals);
+        let closer = if smooth { SMOOTH_CLOSER } else { 1.0 };
         let limits = Limits {
-            cost_tolerance: self.options.cost_tolerance,
+            cost_tolerance: closer * self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
             samples: self.noise.groups.iter().map(sample_count).sum(),
             offsets: Quantity::ALL.map(|q| match self.modelled() {
                 true => 0.0,
                 false => series(self.impact, q).map_or(0.0, |s| s.zero_sd),
             }),
-            instants: self.instants,
+            instants: self.instants && !smooth,
             wanted,
         };
         let law = self.problem.kind.with_parameters(&starts[0].0)?;
