@@ -23,6 +23,9 @@ fn tell(folder: &Path, old: &str, new: &str) {
     std::fs::write(&path, text.replacen(old, new, 1)).unwrap();
 }
 
+/// What has the inertia estimated.
+const INERTIA: &str = "[fit]\nestimate = [\"inertia\"]\n";
+
 fn said(outcome: &Value) -> Vec<(String, String)> {
     let found = outcome["findings"].as_array().unwrap();
     let text = |own: &Value, key: &str| own[key].as_str().unwrap().to_owned();
@@ -74,18 +77,39 @@ fn recovers_an_inertia_that_is_not_what_the_file_says() {
     );
 }
 
+/// Mean area of the loop of force over displacement, over the energy that the motion loses.
+fn loop_over_loss(outcome: &Value) -> f64 {
+    let impacts = outcome["impacts"].as_array().unwrap();
+    let of = |own: &Value| {
+        let derived = &own["derived"];
+        let [area, lost] = ["hysteresis_energy", "absorbed_energy"].map(|n| derived[n].as_f64());
+        area.unwrap() / lost.unwrap()
+    };
+    impacts.iter().map(of).sum::<f64>() / impacts.len() as f64
+}
+
 #[test]
 fn recovers_a_force_that_is_late() {
     let folder = campaign();
+    let before = loop_over_loss(&fitted(folder.path()));
     tell(
         folder.path(),
         "[channels.force]\n",
         "[channels.force]\ndelay = \"-40 us\"\n",
     );
-    let found = said(&fitted(folder.path()));
+    let outcome = fitted(folder.path());
+    let found = said(&outcome);
     let codes: Vec<&str> = found.iter().map(|own| own.0.as_str()).collect();
     assert_eq!(codes, ["bench-delay", "bench-cause"], "{found:?}");
     assert!(found[1].1.contains("µs late"), "{found:?}");
+    let told = found[0].1.split("is about ").nth(1).unwrap();
+    let (percent, side) = told.split_once(" % of the absorbed energy too ").unwrap();
+    let lost = 100.0 * (before - loop_over_loss(&outcome));
+    let percent: f64 = percent.parse().unwrap();
+    assert!(
+        side.starts_with("small") && (percent / lost - 1.0).abs() < 0.1,
+        "{percent} {lost}"
+    );
 }
 
 /// Deviations of k and c, and what the bench adds to the mean of k.
@@ -238,25 +262,30 @@ fn rejects_an_estimate_of_instruments_that_do_nothing() {
 
 #[test]
 fn rejects_what_the_bench_cannot_tell() {
-    for (old, new, said) in [
+    let unknown = [
+        (r#"["arm"]"#, "expected one of inertia"),
+        (r#"["encoder.eccentricity"]"#, "two marks at a known angle"),
+        (r#""inertia""#, "expected a list in brackets"),
+        (r#"["mass"]"#, "its inertia can be estimated"),
+        (
+            r#"["inertia", "force.gain"]"#,
+            "determine one number for inertia and force.gain",
+        ),
+        (
+            r#"["sensor_frequency", "arm_frequency"]"#,
+            "beside sensor_frequency already",
+        ),
+        (
+            r#"["sensor_damping"]"#,
+            "It is estimated with sensor_frequency",
+        ),
+    ];
+    let unknown =
+        unknown.map(|(names, said)| ("[fit]\n", format!("[fit]\nestimate = {names}\n"), said));
+    let others = [
         ("kg m^2\"", "kg m^2 ± 0.0002\"", "has no unit"),
         ("kg m^2\"", "kg m^2 ± -1 %\"", "is negative"),
         ("kg m^2\"", "kg m^2 ± 200 %\"", "uncertainty of 200 %"),
-        (
-            "[fit]\n",
-            "[fit]\nestimate = [\"arm\"]\n",
-            "expected one of inertia",
-        ),
-        (
-            "[fit]\n",
-            "[fit]\nestimate = [\"mass\"]\n",
-            "its inertia can be estimated",
-        ),
-        (
-            "[fit]\n",
-            "[fit]\nestimate = [\"inertia\", \"force.gain\"]\n",
-            "determine one number for inertia and force.gain",
-        ),
         (
             "[contact]\n",
             "[contact]\npre_trigger = \"2 ± 1 ms\"\n",
@@ -292,19 +321,11 @@ fn rejects_what_the_bench_cannot_tell() {
             "[response]\nforce_filter = \"5 ms\"\n[contact]\n",
             "force_filter",
         ),
-        (
-            "[fit]\n",
-            "[fit]\nestimate = [\"sensor_frequency\", \"arm_frequency\"]\n",
-            "beside sensor_frequency already",
-        ),
-        (
-            "[fit]\n",
-            "[fit]\nestimate = [\"sensor_damping\"]\n",
-            "expected one of inertia",
-        ),
-    ] {
+    ];
+    let others = others.map(|(old, new, said)| (old, new.to_owned(), said));
+    for (old, new, said) in unknown.into_iter().chain(others) {
         let folder = campaign();
-        tell(folder.path(), old, new);
+        tell(folder.path(), old, &new);
         let (status, _, told) = windfall("fit campaign", folder.path());
         assert_eq!(status, Some(2), "{new}: {told}");
         assert!(
@@ -319,11 +340,7 @@ fn rejects_what_the_bench_cannot_tell() {
         "inertia = \"0.01435 kg m^2",
         "inertia = \"0.0150675 ± 0.00001 kg m^2",
     );
-    tell(
-        folder.path(),
-        "[fit]\n",
-        "[fit]\nestimate = [\"inertia\"]\n",
-    );
+    tell(folder.path(), "[fit]\n", INERTIA);
     let (status, _, told) = windfall("fit campaign", folder.path());
     assert_eq!(status, Some(2), "{told}");
     assert!(
@@ -332,21 +349,11 @@ fn rejects_what_the_bench_cannot_tell() {
     );
     // Too few impacts.
     let folder = campaign();
-    tell(
-        folder.path(),
-        "[fit]\n",
-        "[fit]\nestimate = [\"inertia\"]\n",
-    );
+    tell(folder.path(), "[fit]\n", INERTIA);
     let path = folder.path().join("campaign/impacts.csv");
     let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(
-        &path,
-        text.lines()
-            .take(4)
-            .map(|line| format!("{line}\n"))
-            .collect::<String>(),
-    )
-    .unwrap();
+    let few: Vec<&str> = text.lines().take(4).collect();
+    std::fs::write(&path, few.join("\n") + "\n").unwrap();
     let (status, _, told) = windfall("fit campaign", folder.path());
     assert_eq!(status, Some(2), "{told}");
     assert!(told.contains("at least 5 are needed"), "{told}");

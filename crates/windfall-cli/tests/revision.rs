@@ -128,8 +128,8 @@ fn pinned_numbers_are_those_of_the_revision() {
     let expected = (
         11,
         [
-            "5a0f7b3b5a85a114",
-            "4070e0dc1233e619",
+            "a181b92d447f09bf",
+            "404fe045a1a00105",
             "0d9a7fd3ea4b6a51",
             "362e0649b943bd49",
             "3e453baf43c8c589",

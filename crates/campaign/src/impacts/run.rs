@@ -290,7 +290,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
     let mut findings = rig.findings.clone();
     findings.extend(law_findings(campaign, &impacts));
     let bench = pooled_bench(&impacts);
-    let of_bench = bench_findings(&rig.rig, &campaign.bench.sd, &bench);
+    let of_bench = bench_findings(&rig.rig, &campaign.bench.sd, &bench, &impacts);
     let misfits = law_misfits(&impacts, !of_bench.is_empty());
     let times = times_of(&campaign.shared);
     let trends = trends(&impacts, &times);

@@ -2,7 +2,7 @@
 
 use crate::result::counted::DEVIATIONS;
 use crate::result::outcome::{BenchOutcome, ImpactOutcome, PooledOutcome};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use windfall_files::found::{FindingOutcome, robust_spread};
 use windfall_files::named::Named;
 use windfall_files::text::number::value_and_sd;
@@ -25,6 +25,8 @@ const GAIN_BY_BLUR: [f64; 2] = [0.3, 50.0];
 const DELAY_BY_BLUR: [f64; 2] = [0.1, 25.0];
 /// The coarsest resolution at which force and displacement say anything of each other; 1.
 pub(crate) const COARSEST: f64 = 0.3;
+/// ∫ a² dt over (Δv)²/T, of a half sine; 1.
+const HALF_SINE: f64 = PI * PI / 8.0;
 /// Deviations by which a value must differ from that of a perfect bench.
 const CLEAR: f64 = 4.0;
 
@@ -137,6 +139,7 @@ pub fn bench_findings(
     rig: &Rig,
     known: &BenchSd,
     bench: &Named<PooledOutcome>,
+    impacts: &[ImpactOutcome],
 ) -> Vec<FindingOutcome> {
     let clear = |name: &str, perfect: f64| {
         let own = bench.get(name)?;
@@ -150,7 +153,10 @@ pub fn bench_findings(
     let gain = clear("force_gain", 1.0);
     let gain = gain.map(|own| FindingOutcome::new("bench-gain", gain_text(rig, own)));
     let delay = clear("force_delay", 0.0);
-    let delay = delay.map(|own| FindingOutcome::new("bench-delay", delay_text(own)));
+    let delay = delay.map(|own| {
+        let energy = energy_text(rig, own, impacts).unwrap_or_default();
+        FindingOutcome::new("bench-delay", delay_text(own) + &energy)
+    });
     gain.into_iter().chain(delay).collect()
 }
 
@@ -235,6 +241,24 @@ fn delay_text(delay: &PooledOutcome) -> String {
         rounded(corner),
         rounded(std::f64::consts::SQRT_2 * corner),
     )
+}
+
+/// What a delay τ does to the balance of energy: it takes τ m ∫ a² dt from the area of the loop
+/// of force over displacement, which is what the fruit absorbs.
+fn energy_text(rig: &Rig, delay: &PooledOutcome, impacts: &[ImpactOutcome]) -> Option<String> {
+    let shares = impacts.iter().filter(|own| says_of_bench(own));
+    let shares = shares.filter_map(|own| {
+        let (impulse, duration) = (own.derived("impulse")?, own.derived("contact_duration")?);
+        let absorbed = own.derived("absorbed_energy").filter(|own| *own > 0.0)?;
+        let lost = HALF_SINE * impulse.powi(2) / (rig.effective_mass() * duration);
+        Some(delay.value * lost / absorbed)
+    });
+    let (share, _) = robust_spread(&shares.collect::<Vec<_>>())?;
+    Some(format!(
+        ". The loop of force over displacement is about {:.1} % of the absorbed energy too {}",
+        100.0 * share.abs(),
+        if share > 0.0 { "small" } else { "large" }
+    ))
 }
 
 /// Two digits.

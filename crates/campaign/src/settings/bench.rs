@@ -77,7 +77,8 @@ pub fn bench_plan(
         let mut all = ESTIMABLE.into_iter();
         let Some(quantity) = all.find(|own| own.name() == word.get_ref()) else {
             let names = ESTIMABLE.map(BenchQuantity::name).join(", ");
-            return Err(wrong(format!("expected one of {names}")));
+            let why = why_untold(word.get_ref());
+            return Err(wrong(format!("expected one of {names}{why}")));
         };
         if let Some(problem) = untold(quantity, rig, &estimate) {
             return Err(wrong(problem));
@@ -117,6 +118,25 @@ fn eccentricity(source: &TomlSource, file: &CampaignFile) -> Result<f64, Error> 
             Err(refused(source, given, (key.table, key.key), problem))
         }
         _ => Ok(value),
+    }
+}
+
+/// Why the impacts do not tell something else of the bench, and what does.
+fn why_untold(name: &str) -> &'static str {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "arm" | "eccentricity" | "counts_per_revolution" | "gain" | "sensitivity" => {
+            ". Force and displacement determine one number for the mass and the scales of both: \
+             estimate inertia, mass or force.gain, and give the others with their ±. A ruler \
+             tells the arm; two marks at a known angle, counted at the place of the impact, tell \
+             the scale of an encoder and what its eccentricity does there"
+        }
+        "tilt" | "centre_of_mass" | "gravity" | "driving_acceleration" => {
+            ". It acts by gravity, which is less than a thousandth of the force in contact: \
+             measure it, and give it with its ±"
+        }
+        "sensor_damping" => ". It is estimated with sensor_frequency",
+        "arm_damping" | "arm_compliance" => ". It is estimated with arm_frequency",
+        _ => "",
     }
 }
 

@@ -412,11 +412,31 @@ fn key_unknown(source: &TomlSource, span: &Range<usize>, message: &str, place: P
     }
 }
 
+/// What serde calls a type, and what a person would.
+const TYPES: [(&str, &str); 7] = [
+    (
+        "expected a sequence",
+        "expected a list in brackets, [\"…\", \"…\"]",
+    ),
+    ("expected f64", "expected a number without quotes"),
+    ("expected u64", "expected a whole number"),
+    ("expected i64", "expected a whole number"),
+    ("expected a string", "expected a text in quotes"),
+    ("expected a boolean", "expected true or false"),
+    ("expected a map", "expected a table"),
+];
+
 /// The reader's message with the line that it is about.
 fn syntax_message(source: &TomlSource, span: &Range<usize>, message: &str) -> String {
     let start = source.text[..span.start.min(source.text.len())]
         .rfind('\n')
         .map_or(0, |at| at + 1);
     let line = source.text[start..].lines().next().unwrap_or_default();
-    format!("{} in: {}", message.trim().replace('\n', "; "), line.trim())
+    let mut message = message.trim().replace('\n', "; ");
+    if message.starts_with("invalid type") {
+        for (own, plain) in TYPES {
+            message = message.replace(own, plain);
+        }
+    }
+    format!("{message} in: {}", line.trim())
 }

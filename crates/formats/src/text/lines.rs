@@ -151,7 +151,7 @@ mod tests {
             let source = Source::from_bytes("t", bytes);
             let mut whole = Vec::new();
             for index in 0..stretches(&lines) {
-                whole.extend(stretch(&source, &lines, index, &mut Vec::new()).unwrap());
+                whole.extend_from_slice(stretch(&source, &lines, index, &mut Vec::new()).unwrap());
             }
             assert!(whole == text.as_bytes(), "{encoding:?}");
         }

@@ -26,9 +26,9 @@ use windfall_signal::impact::Impact;
 /// Factors of stiffness and damping tried when the first start fails.
 const OTHER_STARTS: [(f64, f64); 4] = [(0.3, 1.0), (3.0, 1.0), (1.0, 0.2), (1.0, 3.0)];
 
-/// How much closer the fit comes that only shows the noise, which may end before the minimum
-/// for instantaneous samples; weights, and with them the cost, follow its last digits.
-const SMOOTH_CLOSER: f64 = 0.01;
+/// How much closer to its minimum the fit comes that only shows the noise: it may end at that of
+/// averaged samples, and weights, and with them the cost, follow its last digits.
+const CLOSER: f64 = 0.01;
 
 /// Everything decided before the minimiser runs.
 pub(crate) struct Plan<'a> {
@@ -277,9 +277,10 @@ impl Plan<'_> {
         let no_start = Error::NoStart {
             law: description.name,
         };
-        // Samples are weighted by the residuals of the smooth minimum, found more closely.
-        let smooth = matches!(wanted, Wanted::Residuals);
-        let closer = if smooth { SMOOTH_CLOSER } else { 1.0 };
+        let closer = match wanted {
+            Wanted::Residuals => CLOSER,
+            Wanted::Covariance | Wanted::Intervals(_) => 1.0,
+        };
         let limits = Limits {
             cost_tolerance: closer * self.options.cost_tolerance,
             max_evaluations: self.options.max_evaluations,
@@ -288,7 +289,7 @@ impl Plan<'_> {
                 true => 0.0,
                 false => series(self.impact, q).map_or(0.0, |s| s.zero_sd),
             }),
-            instants: self.instants && !smooth,
+            instants: self.instants,
             wanted,
         };
         let law = self.problem.kind.with_parameters(&starts[0].0)?;

@@ -34,6 +34,8 @@ const ONSET_SHIFT: f64 = 1.5;
 const MOST_SHIFTS: usize = 4;
 /// A minimum is another one if it is lower by this; units of χ².
 const LOWER_BY: f64 = 1e-3;
+/// Costs that are this much apart show the same noise; 1.
+const ALIKE: f64 = 0.01;
 /// Free parameters that one fit can have.
 pub(crate) const LARGEST_FREE: usize = 9;
 /// Velocity, onset and displacement offset.
@@ -186,12 +188,16 @@ fn best_of<L: BatchLaw<N>, const N: usize, const W: usize, const P: usize>(
     let (minimum, spent) = over_onsets(&estimator, minimum, &options(free, limits));
     evaluations += spent;
     let smooth = minimum;
-    let (minimum, spent) = match limits.instants {
+    let seen = match (limits.instants, &limits.wanted) {
+        (true, Wanted::Residuals) => residuals_alike(&estimator, &minimum),
+        _ => None,
+    };
+    let (minimum, spent) = match limits.instants && seen.is_none() {
         true => polished(&estimator, minimum, &options(free, limits)),
         false => (minimum, 0),
     };
     evaluations += spent;
-    let mut solution = complete(law_count, &estimator, &minimum, limits)?;
+    let mut solution = complete(law_count, &estimator, &minimum, limits, seen)?;
     solution.evaluations += evaluations;
     if let Wanted::Intervals(plan) = &limits.wanted
         && minimum.stop == Stop::Converged
@@ -321,8 +327,7 @@ fn polished<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     minimum: Minimum<P>,
     options: &Options<P>,
 ) -> (Minimum<P>, usize) {
-    let means = estimator.groups().iter().any(|group| group.means);
-    if minimum.stop != Stop::Converged || !estimator.averages() || means {
+    if !may_be_polished(estimator, &minimum) {
         return (minimum, 0);
     }
     let exact = estimator
@@ -333,6 +338,28 @@ fn polished<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
         && exact.equations.cost <= minimum.equations.cost;
     let spent = exact.evaluations;
     (if good { exact } else { minimum }, spent)
+}
+
+fn may_be_polished<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: &Minimum<P>,
+) -> bool {
+    let means = estimator.groups().iter().any(|group| group.means);
+    minimum.stop == Stop::Converged && estimator.averages() && !means
+}
+
+/// Residuals of instantaneous samples at the minimum for averaged ones, where they show the same
+/// noise: their cost is the same but for a hundredth.
+fn residuals_alike<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
+    estimator: &Estimator<L, N, W, P>,
+    minimum: &Minimum<P>,
+) -> Option<(NormalEquations<P>, Rows)> {
+    let exact = estimator.with_sampling(Sampling::Instantaneous);
+    let seen = may_be_polished(estimator, minimum)
+        .then(|| exact.residuals(&minimum.parameters))
+        .flatten()?;
+    let apart = seen.0.cost - minimum.equations.cost;
+    (apart.abs() < ALIKE * minimum.equations.cost).then_some(seen)
 }
 
 fn options<const P: usize>(free: &[FreeParameter], limits: &Limits) -> Options<P> {
@@ -358,11 +385,12 @@ fn complete<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,
     limits: &Limits,
+    seen: Option<(NormalEquations<P>, Rows)>,
 ) -> Option<Solution> {
-    let (equations, rows) = match limits.wanted {
+    let (equations, rows) = seen.or_else(|| match limits.wanted {
         Wanted::Residuals => estimator.residuals(&minimum.parameters),
         Wanted::Covariance | Wanted::Intervals(_) => estimator.rows(&minimum.parameters),
-    }?;
+    })?;
     let values = estimator.values(&minimum.parameters);
     let free = estimator.free();
     let at: Vec<f64> = free.iter().map(|p| values.get(p.target)).collect();
