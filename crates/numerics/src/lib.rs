@@ -9,6 +9,7 @@ pub mod cholesky;
 pub mod double_double;
 pub mod fast;
 pub mod least_squares;
+pub mod logarithmic;
 pub mod normal_equations;
 pub mod ode;
 pub mod prefetch;

@@ -430,9 +430,8 @@ fn derivative_of_the_models() {
 /// leaves three digits.
 const ROUNDED_RESIDUALS: [&str; 1] = ["Lanczos1"];
 
-/// Starts, from 0, that the minimiser does not leave for the minimum, and says so: the
-/// first step from BoxBOD's first start goes where the data no longer tell its exponent.
-const LOST: [(&str, usize); 1] = [("BoxBOD", 0)];
+/// Evaluations that none of the sets may need.
+const MOST_EVALUATIONS: usize = 1_000;
 
 /// With a tight tolerance: 6 digits of the values, where 11 are certified, and
 /// 4 of the standard deviations, from both starts.
@@ -455,13 +454,10 @@ fn reference_nist_values_and_deviations_from_both_starts() {
                 found.evaluations,
                 found.stop
             );
-            if LOST.contains(&(name, start)) {
-                assert_eq!(found.stop, Stop::Stuck, "{name}");
-                continue;
-            }
+            assert!(found.evaluations < MOST_EVALUATIONS, "{name}");
             let rounded = ROUNDED_RESIDUALS.contains(&name);
             assert_eq!(found.stop, Stop::Converged, "{name}");
-            assert!(found.value_digits > 6.0, "{name}");
+            assert!(found.value_digits > 9.0, "{name}");
             assert!(found.shape_digits > 4.0, "{name}");
             assert!(found.sd_digits > if rounded { 2.5 } else { 4.0 }, "{name}");
             assert!(
@@ -478,11 +474,7 @@ fn reference_nist_values_and_deviations_from_both_starts() {
 fn reference_nist_at_the_default_tolerance() {
     let tolerance = Options::<1>::default().cost_tolerance;
     for (name, fit) in strd::SETS {
-        for (start, found) in fit(name, tolerance).iter().flatten().enumerate() {
-            if LOST.contains(&(name, start)) {
-                assert_eq!(found.stop, Stop::Stuck, "{name}");
-                continue;
-            }
+        for found in fit(name, tolerance).iter().flatten() {
             let allowed = if ROUNDED_RESIDUALS.contains(&name) {
                 1.0
             } else {

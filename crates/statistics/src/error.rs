@@ -14,7 +14,10 @@ pub enum Error {
         known: String,
         suggestion: Option<String>,
     },
-    #[error("column {name:?} holds text (row {row}: {text:?}), and numbers are needed")]
+    #[error(
+        "column {name:?} holds text (row {row}: {text:?}), and numbers are needed; if that stands \
+         for a missing value, say --missing {text:?}"
+    )]
     NotNumbers {
         name: String,
         row: usize,
@@ -22,13 +25,19 @@ pub enum Error {
     },
     #[error(
         "column {name:?} holds numbers but for {text:?} in row {row}: mend that cell, leave it \
-         blank, or write C({name}) if the column names categories"
+         blank, say --missing {text:?} if it stands for a missing value, or write C({name}) if \
+         the column names categories"
     )]
     NumbersWithText {
         name: String,
         row: usize,
         text: String,
     },
+    #[error(
+        "the levels of {name:?} have no order, and a polynomial over them needs one: declare it, \
+         --levels '{name}={levels}' with the levels from the lowest to the highest"
+    )]
+    UnorderedLevels { name: String, levels: String },
     #[error("{problem}\n  {formula}\n  {}^", " ".repeat(*column))]
     FormulaSyntax {
         formula: String,

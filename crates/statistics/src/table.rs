@@ -1,6 +1,7 @@
 //! Columns of numbers and of categories.
 
 use crate::error::Error;
+use std::collections::HashMap;
 use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// Columns of one length.
@@ -31,34 +32,128 @@ pub enum Cells {
 /// Cells that name a category each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Categories {
-    /// Names of the levels.
+    /// Names of the levels, the reference first.
     pub levels: Vec<String>,
     /// Level of each row; `None` where a cell is missing.
     pub codes: Vec<Option<usize>>,
+    /// Whether the levels have an order of their own: one that was declared, or that of numbers.
+    pub ordered: bool,
 }
 
 impl Categories {
     /// Categories of cells, levels in the order of numbers where all are numbers,
     /// else of the alphabet; a blank cell is missing.
     pub fn of_cells(cells: &[String]) -> Self {
-        let mut levels: Vec<String> = cells.iter().filter(|c| !c.is_empty()).cloned().collect();
-        levels.sort_unstable();
-        levels.dedup();
-        let numbers: Option<Vec<f64>> = levels.iter().map(|level| level.parse().ok()).collect();
-        if let Some(numbers) = numbers {
-            let mut order: Vec<usize> = (0..levels.len()).collect();
-            order.sort_by(|a, b| numbers[*a].total_cmp(&numbers[*b]));
-            levels = order.iter().map(|place| levels[*place].clone()).collect();
+        let mut found = LevelCodes::default();
+        for cell in cells {
+            found.push(Some(cell.as_str()).filter(|cell| !cell.is_empty()));
         }
-        let codes = cells
+        found.sorted()
+    }
+
+    /// The same with the levels in the order that was declared; a number is the level of the
+    /// same value, however it is written.
+    ///
+    /// # Errors
+    /// The row, from 1, and the text of the first cell that is none of them.
+    pub fn declared(&self, levels: &[String]) -> Result<Self, (usize, String)> {
+        let value = |text: &str| text.parse::<f64>().ok();
+        let place = |text: &String| {
+            let number = value(text);
+            let same = |own: &String| number.is_some() && value(own) == number;
+            let exact = levels.iter().position(|own| own == text);
+            exact.or_else(|| levels.iter().position(same))
+        };
+        let places: Vec<Option<usize>> = self.levels.iter().map(place).collect();
+        let moved = |(row, code): (usize, &Option<usize>)| match code {
+            Some(code) => match places[*code] {
+                None => Err((row + 1, self.levels[*code].clone())),
+                found => Ok(found),
+            },
+            None => Ok(None),
+        };
+        let codes = self.codes.iter().enumerate().map(moved);
+        Ok(Self {
+            levels: levels.to_vec(),
+            codes: codes.collect::<Result<_, _>>()?,
+            ordered: true,
+        })
+    }
+}
+
+/// Levels as they come, cell by cell.
+#[derive(Clone, Debug, Default)]
+pub struct LevelCodes {
+    known: HashMap<String, usize>,
+    codes: Vec<Option<usize>>,
+}
+
+impl LevelCodes {
+    /// Takes the cell of the next row; `None` where it is missing.
+    pub fn push(&mut self, cell: Option<&str>) {
+        let next = self.known.len();
+        let code = cell.map(|cell| match self.known.get(cell) {
+            Some(code) => *code,
+            None => *self.known.entry(cell.to_owned()).or_insert(next),
+        });
+        self.codes.push(code);
+    }
+
+    /// Categories with the levels in the order of numbers where all are numbers, else of the
+    /// alphabet.
+    pub fn sorted(self) -> Categories {
+        let mut levels: Vec<String> = self.known.keys().cloned().collect();
+        levels.sort_unstable();
+        let numbers = levels
             .iter()
-            .map(|cell| levels.iter().position(|level| level == cell))
-            .collect();
-        Self { levels, codes }
+            .map(|level| Some((level.parse().ok()?, level)));
+        let numbers: Option<Vec<(f64, &String)>> = numbers.collect();
+        let ordered = numbers.is_some();
+        if let Some(mut numbers) = numbers {
+            numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+            levels = numbers
+                .into_iter()
+                .map(|(_, level)| level.clone())
+                .collect();
+        }
+        self.coded(levels, ordered)
+    }
+
+    fn coded(mut self, levels: Vec<String>, ordered: bool) -> Categories {
+        let mut moved = vec![0; levels.len()];
+        for (place, level) in levels.iter().enumerate() {
+            moved[self.known[level]] = place;
+        }
+        for code in self.codes.iter_mut().flatten() {
+            *code = moved[*code];
+        }
+        Categories {
+            levels,
+            codes: self.codes,
+            ordered,
+        }
     }
 }
 
 impl Cells {
+    /// Categories as they are; numbers as categories of equal numbers.
+    pub fn categories(&self) -> Categories {
+        match self {
+            Self::Categories(categories) => categories.clone(),
+            Self::Numbers(numbers) => {
+                let mut known: Vec<f64> = numbers.iter().copied().filter(|x| !x.is_nan()).collect();
+                known.sort_by(f64::total_cmp);
+                known.dedup();
+                let place = |x: &f64| known.binary_search_by(|other| other.total_cmp(x)).ok();
+                Categories {
+                    codes: numbers.iter().map(place).collect(),
+                    levels: known.iter().map(f64::to_string).collect(),
+                    ordered: true,
+                }
+            }
+        }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         match self {
@@ -143,6 +238,30 @@ mod tests {
         let found = Categories::of_cells(&cells);
         assert_eq!(found.levels, ["9", "10"]);
         assert_eq!(found.codes, [Some(1), Some(0), None, Some(0)]);
+        assert!(found.ordered);
+        let cells = ["b", "a", "b"].map(str::to_owned);
+        let found = Categories::of_cells(&cells);
+        assert_eq!(
+            (&found.levels[..], found.ordered),
+            (&["a".to_owned(), "b".to_owned()][..], false)
+        );
+        assert_eq!(found.codes, [Some(1), Some(0), Some(1)]);
+    }
+
+    #[test]
+    fn closed_form_declared_levels() {
+        let read = |cells: &[Option<&str>], levels: &[&str]| {
+            let mut codes = LevelCodes::default();
+            cells.iter().for_each(|cell| codes.push(*cell));
+            let levels: Vec<String> = levels.iter().map(|level| (*level).to_owned()).collect();
+            codes.sorted().declared(&levels)
+        };
+        let found = read(&[Some("high"), None, Some("low")], &["low", "high"]).unwrap();
+        assert_eq!(found.codes, [Some(1), None, Some(0)]);
+        let found = read(&[Some("2.0"), Some("2"), Some("10")], &["10", "2"]).unwrap();
+        assert_eq!(found.codes, [Some(1), Some(1), Some(0)]);
+        let error = read(&[Some("low"), Some("lwo")], &["low"]).unwrap_err();
+        assert_eq!(error, (2, "lwo".to_owned()));
     }
 
     #[test]

@@ -4,5 +4,7 @@ pub mod compare;
 pub mod design;
 #[cfg(feature = "clap")]
 mod option_words;
+pub mod reading;
 pub mod regress;
+pub mod rows;
 pub mod surface;

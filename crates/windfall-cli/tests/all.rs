@@ -36,5 +36,6 @@ mod scene;
 mod serve;
 mod several_contacts;
 mod stopped_runs;
+mod tables;
 mod user_laws;
 mod velocities;

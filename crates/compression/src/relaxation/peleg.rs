@@ -2,7 +2,8 @@
 
 use crate::fit::CompressionEstimate;
 use crate::relaxation::curve::{Curve, Parameters, Problem, SIZE, options};
-use windfall_numerics::least_squares::{Bounds, Stop, minimise};
+use windfall_numerics::least_squares::{Bounds, Stop};
+use windfall_numerics::logarithmic::minimise_either;
 
 /// Peleg's constants, fitted to a hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +58,7 @@ pub fn fit_peleg(times: &[f64], force: &[f64]) -> PelegFit {
     let mut bounds = Bounds::NONE;
     bounds.lower[1] = 1e-9;
     bounds.lower[2] = 1e-9;
-    let minimum = minimise(&mut problem, &start(times, force), &bounds, &options());
+    let minimum = minimise_either(&mut problem, &start(times, force), &bounds, &options());
     let found = minimum.parameters;
     let free = [0, 1, 2];
     let spread = problem.spread(&found, &free);

@@ -5,7 +5,7 @@ use crate::intervals::request::BouncesRequest;
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
 use windfall_files::table::csv::{Row, Table, read_table};
-use windfall_files::table::data::{EXCLUDE_COLUMN, excludes, is_missing};
+use windfall_files::table::data::{EXCLUDE_COLUMN, MISSING, excludes};
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::column_role::unit_of;
 use windfall_files::text::column_title::column_title;
@@ -91,7 +91,7 @@ impl Written {
     /// An interval as it is written, in s; `None` where there is none.
     fn interval(&mut self, text: &str, unit: f64) -> Result<Option<f64>, &'static str> {
         let text = text.trim();
-        if is_missing(text) || text == "-" {
+        if matches!(text, "" | "-" | MISSING) || text.eq_ignore_ascii_case("nan") {
             return Ok(None);
         }
         let point = match text.contains('.') {

@@ -7,10 +7,10 @@ use crate::table::write::plain_cell;
 use std::path::{Path, PathBuf};
 use windfall_numerics::unit::quantity::LARGEST;
 use windfall_statistics::error::Error as StatisticsError;
-use windfall_statistics::table::{Categories, Cells, Column, Table};
+use windfall_statistics::table::{Categories, Cells, Column, LevelCodes, Table};
 
-/// Cells that stand for a missing value, in lower case.
-const MISSING: [&str; 7] = ["", "na", "nan", "n/a", "null", "none", "."];
+/// The word that stands for a missing value where no others are told.
+pub const MISSING: &str = "NA";
 
 /// A table with what its file says beside it.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,13 +98,17 @@ fn is_of_request(error: &StatisticsError) -> bool {
 /// Reads a table: columns of numbers and missing cells are numeric, others categories.
 ///
 /// Separated by commas, semicolons or tabs; with semicolons or tabs, numbers may
-/// have a decimal comma. Missing cells are blank, `NA`, `NaN`, `N/A`, `null`,
-/// `none` or a single point.
+/// have a decimal comma. Missing cells are blank or `NA`, and `NaN` in a column of numbers.
 ///
 /// # Errors
 /// As [`crate::table::csv::read_table`]; there is no row; a number that is infinite or beyond
 /// 1e100.
 pub fn read_data(path: &Path) -> Result<Data, Error> {
+    read_data_without(path, &[MISSING.to_owned()])
+}
+
+/// [`read_data`], where these words stand for a missing value, and blank cells.
+pub fn read_data_without(path: &Path, missing: &[String]) -> Result<Data, Error> {
     let mut open_file = open(path)?;
     let comma = open_file.separator != "commas";
     let columns = open_file.columns.clone();
@@ -120,7 +124,7 @@ pub fn read_data(path: &Path) -> Result<Data, Error> {
         for ((column, cell), name) in numbers.iter_mut().zip(&record).zip(&columns) {
             let Some(values) = column else { continue };
             let cell = plain_cell(cell);
-            match number(cell, comma) {
+            match number(cell, comma, missing) {
                 Some(value) if value.abs() > LARGEST => {
                     return Err(Error::CellNotFinite {
                         place: Place {
@@ -146,7 +150,7 @@ pub fn read_data(path: &Path) -> Result<Data, Error> {
     let text = numbers.iter().enumerate().filter(|(_, n)| n.is_none());
     let text: Vec<usize> = text.map(|(index, _)| index).collect();
     let comments = std::mem::take(&mut open_file.comments);
-    let mut categories = read_categories(path, &text)?.into_iter();
+    let mut categories = read_categories(path, &text, missing)?.into_iter();
     let cells = numbers.into_iter().map(|numbers| match numbers {
         Some(numbers) => Cells::Numbers(numbers),
         None => Cells::Categories(categories.next().unwrap_or_default()),
@@ -170,43 +174,41 @@ pub fn read_data(path: &Path) -> Result<Data, Error> {
 }
 
 /// Reads again the columns that turned out to hold text.
-fn read_categories(path: &Path, columns: &[usize]) -> Result<Vec<Categories>, Error> {
+fn read_categories(
+    path: &Path,
+    columns: &[usize],
+    missing: &[String],
+) -> Result<Vec<Categories>, Error> {
     if columns.is_empty() {
         return Ok(Vec::new());
     }
-    let mut cells: Vec<Vec<String>> = columns.iter().map(|_| Vec::new()).collect();
+    let mut found = vec![LevelCodes::default(); columns.len()];
     let mut open_file = open(path)?;
     let mut record = csv::StringRecord::new();
     while next_row(&mut open_file, &mut record)? {
         if !counts(&open_file.columns, &record) {
             continue;
         }
-        for (place, column) in columns.iter().enumerate() {
+        for (levels, column) in found.iter_mut().zip(columns) {
             let cell = plain_cell(record.get(*column).unwrap_or_default());
-            cells[place].push(match is_missing(cell) {
-                true => String::new(),
-                false => cell.to_owned(),
-            });
+            levels.push(Some(cell).filter(|cell| !is_missing(cell, missing)));
         }
     }
-    Ok(cells
-        .iter()
-        .map(|cells| Categories::of_cells(cells))
-        .collect())
+    Ok(found.into_iter().map(LevelCodes::sorted).collect())
 }
 
-/// Whether a cell stands for a missing value.
-pub fn is_missing(cell: &str) -> bool {
-    cell.len() <= 4 && MISSING.contains(&cell.to_ascii_lowercase().as_str())
+/// Whether a cell is blank or one of the words that stand for a missing value.
+fn is_missing(cell: &str, words: &[String]) -> bool {
+    cell.is_empty() || words.iter().any(|word| word == cell)
 }
 
 /// * `comma`: whether a comma may be the decimal mark
-fn number(cell: &str, comma: bool) -> Option<f64> {
+fn number(cell: &str, comma: bool, missing: &[String]) -> Option<f64> {
+    if is_missing(cell, missing) {
+        return Some(f64::NAN);
+    }
     if let Ok(number) = cell.parse() {
         return Some(number);
-    }
-    if is_missing(cell) {
-        return Some(f64::NAN);
     }
     match comma && cell.matches(',').count() == 1 {
         true => cell.replace(',', ".").parse().ok(),

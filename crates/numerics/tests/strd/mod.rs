@@ -8,8 +8,9 @@ use model::Model;
 use read_set::{DataSet, read_set};
 use windfall_numerics::cholesky;
 use windfall_numerics::least_squares::{
-    Bounds, LeastSquares, Minimum, NormalEquations, Options, Stop, minimise,
+    Bounds, LeastSquares, Minimum, NormalEquations, Options, Stop,
 };
+use windfall_numerics::logarithmic::minimise_either;
 
 /// Residuals of a model against observed responses.
 pub struct Regression<'a, const P: usize> {
@@ -76,7 +77,7 @@ pub fn fit<const P: usize>(
     assert_eq!(set.parameters.len(), P);
     let start = std::array::from_fn(|i| set.parameters[i].starts[which]);
     let rows = &set.rows;
-    let minimum = minimise(
+    let minimum = minimise_either(
         &mut Regression { model, rows },
         &start,
         &Bounds::NONE,

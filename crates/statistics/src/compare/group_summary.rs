@@ -5,7 +5,7 @@ use crate::distribution::quantile::quantile;
 use crate::distribution::tail::t_upper_quantile;
 use crate::error::Error;
 use crate::sample::check_probability;
-use crate::table::{Categories, Cells, Table};
+use crate::table::{Categories, Table};
 
 /// The values of one group of rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,18 +75,22 @@ pub fn split_groups(table: &Table, by: &[&str], value: &str) -> Result<Groups, E
     let values = table.numbers(value)?;
     let columns: Vec<Categories> = by
         .iter()
-        .map(|name| Ok(categories_of(&table.column(name)?.cells)))
+        .map(|name| Ok(table.column(name)?.cells.categories()))
         .collect::<Result<_, Error>>()?;
     let mut ungrouped = Vec::new();
-    let mut keyed: Vec<(Vec<usize>, usize)> = Vec::new();
-    for row in 0..values.len() {
-        match columns.iter().map(|column| column.codes[row]).collect() {
+    let mut keyed: Vec<(usize, usize)> = Vec::new();
+    let mut keys = vec![Some(0); values.len()];
+    for column in &columns {
+        joined(&mut keys, column);
+    }
+    for (row, key) in keys.into_iter().enumerate() {
+        match key {
             Some(key) => keyed.push((key, row)),
             None => ungrouped.push(row),
         }
     }
-    // stable: rows keep their order within a group
-    keyed.sort_by(|a, b| a.0.cmp(&b.0));
+    // Rows keep their order within a group.
+    keyed.sort_unstable();
     let groups = keyed
         .chunk_by(|a, b| a.0 == b.0)
         .map(|rows| group_of(rows, &columns, values))
@@ -94,35 +98,30 @@ pub fn split_groups(table: &Table, by: &[&str], value: &str) -> Result<Groups, E
     Ok(Groups { groups, ungrouped })
 }
 
-fn group_of(keyed: &[(Vec<usize>, usize)], columns: &[Categories], values: &[f64]) -> Group {
-    let key = &keyed[0].0;
-    let levels = columns.iter().zip(key);
-    let rows = keyed.iter().map(|(_, row)| *row);
-    let rows: Vec<usize> = rows.filter(|row| !values[*row].is_nan()).collect();
-    Group {
-        levels: levels
-            .map(|(column, code)| column.levels[*code].clone())
-            .collect(),
-        values: rows.iter().map(|row| values[*row]).collect(),
-        missing: keyed.len() - rows.len(),
-        rows,
+/// Ranks of the pairs of a key and a level of another column, in their order.
+fn joined(keys: &mut [Option<usize>], column: &Categories) {
+    let pair = |(key, code): (&Option<usize>, &Option<usize>)| Some(((*key)?, (*code)?));
+    let pairs: Vec<Option<(usize, usize)>> = keys.iter().zip(&column.codes).map(pair).collect();
+    let mut known: Vec<(usize, usize)> = pairs.iter().flatten().copied().collect();
+    known.sort_unstable();
+    known.dedup();
+    for (key, pair) in keys.iter_mut().zip(pairs) {
+        *key = pair.and_then(|pair| known.binary_search(&pair).ok());
     }
 }
 
-/// Categories as they are; numbers as categories of equal numbers.
-fn categories_of(cells: &Cells) -> Categories {
-    match cells {
-        Cells::Categories(categories) => categories.clone(),
-        Cells::Numbers(numbers) => {
-            let mut known: Vec<f64> = numbers.iter().copied().filter(|x| !x.is_nan()).collect();
-            known.sort_by(f64::total_cmp);
-            known.dedup();
-            let place = |x: &f64| known.binary_search_by(|other| other.total_cmp(x)).ok();
-            Categories {
-                codes: numbers.iter().map(place).collect(),
-                levels: known.iter().map(f64::to_string).collect(),
-            }
-        }
+fn group_of(keyed: &[(usize, usize)], columns: &[Categories], values: &[f64]) -> Group {
+    let first = keyed[0].1;
+    let levels = columns
+        .iter()
+        .filter_map(|own| own.codes[first].map(|code| &own.levels[code]));
+    let rows = keyed.iter().map(|(_, row)| *row);
+    let rows: Vec<usize> = rows.filter(|row| !values[*row].is_nan()).collect();
+    Group {
+        levels: levels.cloned().collect(),
+        values: rows.iter().map(|row| values[*row]).collect(),
+        missing: keyed.len() - rows.len(),
+        rows,
     }
 }
 
@@ -166,7 +165,7 @@ pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Column;
+    use crate::table::{Cells, Column};
 
     fn table() -> Table {
         let text = |cells: &[&str]| {

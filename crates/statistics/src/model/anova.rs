@@ -5,6 +5,7 @@ use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::Reduced;
 use nalgebra::DMatrix;
 use serde::Serialize;
+use std::hash::{DefaultHasher, Hasher};
 
 /// Which models a term is tested between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,26 +148,30 @@ pub struct LackOfFit {
     pub pure_error: SumOfSquares,
 }
 
-/// Splits the residuals into lack of fit and pure error of rows with equal `settings`;
-/// `None` without repeated rows or without degrees of freedom.
+/// Splits the residuals into lack of fit and pure error of rows with equal `settings`; `None`
+/// without repeated rows. A model with a coefficient for every setting leaves no degrees of
+/// freedom for the lack of fit.
 pub fn lack_of_fit(
     settings: &DMatrix<f64>,
     y: &[f64],
     residual_ss: f64,
     residual_df: usize,
 ) -> Option<LackOfFit> {
-    let mut order: Vec<usize> = (0..y.len()).collect();
-    let key = |row: usize| {
-        settings
-            .row(row)
-            .iter()
-            .map(|v| (v + 0.0).to_bits())
-            .collect::<Vec<_>>()
-    };
-    let keys: Vec<Vec<u64>> = (0..y.len()).map(key).collect();
-    order.sort_by(|a, b| keys[*a].cmp(&keys[*b]).then(a.cmp(b)));
+    // Rows with equal settings have equal keys; that others have them too is left to the hash
+    // to prevent.
+    let mut keys = vec![DefaultHasher::new(); y.len()];
+    for column in settings.column_iter() {
+        for (key, value) in keys.iter_mut().zip(&column) {
+            // Zeros of both signs are one setting.
+            key.write_u64((value + 0.0).to_bits());
+        }
+    }
+    let keys = keys.iter().map(DefaultHasher::finish);
+    let mut order: Vec<(u64, usize)> = keys.zip(0..).collect();
+    order.sort_unstable();
     let (mut pure_ss, mut pure_df) = (0.0, 0);
-    for group in order.chunk_by(|a, b| keys[*a] == keys[*b]) {
+    for group in order.chunk_by(|a, b| a.0 == b.0) {
+        let group: Vec<usize> = group.iter().map(|(_, row)| *row).collect();
         let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
         pure_ss += group
             .iter()
@@ -174,12 +179,17 @@ pub fn lack_of_fit(
             .sum::<f64>();
         pure_df += group.len() - 1;
     }
-    if pure_df == 0 || residual_df <= pure_df {
+    if pure_df == 0 || residual_df < pure_df {
         return None;
     }
-    let ss = (residual_ss - pure_ss).max(0.0);
+    let df = residual_df - pure_df;
+    let ss = if df == 0 {
+        0.0
+    } else {
+        (residual_ss - pure_ss).max(0.0)
+    };
     Some(LackOfFit {
-        lack: row("lack of fit", ss, residual_df - pure_df, (pure_ss, pure_df)),
+        lack: row("lack of fit", ss, df, (pure_ss, pure_df)),
         pure_error: SumOfSquares {
             ss: pure_ss,
             df: pure_df as f64,

@@ -67,7 +67,7 @@ pub(crate) fn encoding(atom: &Atom, table: &Table, contrast: Contrast) -> Result
         Kind::Name(column) => match &table.column(column)?.cells {
             Cells::Categories(categories) => {
                 check_mostly_text(column, categories)?;
-                Ok(category(name, column, categories, contrast, None))
+                category(name, column, categories, contrast, None)
             }
             Cells::Numbers(_) => Ok(Encoding::Numbers {
                 name,
@@ -127,19 +127,28 @@ fn category(
     categories: &Categories,
     contrast: Contrast,
     reference: Option<usize>,
-) -> Encoding {
+) -> Result<Encoding, Error> {
     // Levels that no row has would be columns of zeros.
-    let used = |level: &usize| categories.codes.contains(&Some(*level));
-    let kept: Vec<usize> = (0..categories.levels.len()).filter(used).collect();
+    let mut used = vec![false; categories.levels.len()];
+    for code in categories.codes.iter().flatten() {
+        used[*code] = true;
+    }
+    let kept: Vec<usize> = (0..used.len()).filter(|level| used[*level]).collect();
     let reference = reference.and_then(|level| kept.iter().position(|k| *k == level));
     let levels: Vec<String> = kept.iter().map(|l| categories.levels[*l].clone()).collect();
-    Encoding::Category {
+    if contrast == Contrast::Polynomial && !categories.ordered && levels.len() > 2 {
+        return Err(Error::UnorderedLevels {
+            name: column.to_owned(),
+            levels: levels.join(","),
+        });
+    }
+    Ok(Encoding::Category {
         name,
         column: column.to_owned(),
         contrast: contrast.matrix(&levels, reference.unwrap_or(0)),
         full: Contrast::Full.matrix(&levels, 0),
         levels,
-    }
+    })
 }
 
 fn request(what: &str, problem: &str) -> Error {
@@ -160,16 +169,7 @@ fn category_call(
     let Kind::Name(column) = &first.value.kind else {
         return Err(request(&name, "C( ) takes a column first"));
     };
-    let categories = match &table.column(column)?.cells {
-        Cells::Categories(categories) => categories.clone(),
-        Cells::Numbers(numbers) => {
-            let text = |n: &f64| match n.is_nan() {
-                true => String::new(),
-                false => n.to_string(),
-            };
-            Categories::of_cells(&numbers.iter().map(text).collect::<Vec<_>>())
-        }
-    };
+    let categories = table.column(column)?.cells.categories();
     let (mut contrast, mut reference) = (contrast, None);
     for option in options {
         let text = match &option.value.kind {
@@ -189,7 +189,7 @@ fn category_call(
         let problem = format!("there is no contrast {text:?}; there are {names}");
         contrast = known.ok_or_else(|| request(&name, &problem))?.1;
     }
-    Ok(category(name, column, &categories, contrast, reference))
+    category(name, column, &categories, contrast, reference)
 }
 
 /// `poly(x, degree)`.

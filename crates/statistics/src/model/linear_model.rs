@@ -1,5 +1,6 @@
 //! Linear models: estimates with their errors, and how good they are.
 
+use crate::as_written::as_written;
 use crate::coefficient::Coefficient;
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
@@ -193,7 +194,7 @@ fn residuals(
 ) -> Vec<f64> {
     let pairs = solved.columns.iter().zip(&solved.estimates);
     if precise {
-        let mut left: Vec<DoubleDouble> = y[rows.clone()].iter().map(|y| (*y).into()).collect();
+        let mut left: Vec<DoubleDouble> = y[rows.clone()].iter().map(|y| as_written(*y)).collect();
         for (column, estimate) in pairs {
             let own = &x.column(*column).data.into_slice()[rows.clone()];
             for (left, x) in left.iter_mut().zip(own) {

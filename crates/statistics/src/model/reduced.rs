@@ -5,6 +5,7 @@
 //! reduced in twice the precision of doubles, larger ones in parallel blocks that do not
 //! depend on the number of threads.
 
+use crate::as_written::as_written;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use windfall_numerics::double_double::DoubleDouble;
@@ -76,7 +77,7 @@ fn reduce_precisely(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
         .column_iter()
         .map(|column| column.iter().map(|v| DoubleDouble::from(*v)).collect())
         .collect();
-    columns.push(y.iter().map(|v| DoubleDouble::from(*v)).collect());
+    columns.push(y.iter().map(|v| as_written(*v)).collect());
     let count = x.ncols();
     for step in 0..count.min(x.nrows()) {
         let (before, after) = columns.split_at_mut(step + 1);

@@ -1,12 +1,13 @@
 //! `windfall compare --measured … --predicted …`: predicted against measured.
 
 use crate::compare::group_outcome::statistics_error;
-use crate::regress::findings::{finding, lines_text};
+use crate::regress::findings::finding;
+use crate::rows::lines_text;
 use serde::Serialize;
-use std::path::Path;
+
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::table::data::read_data;
+use windfall_files::table::data::Data;
 use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 
 /// What is asked.
@@ -64,9 +65,8 @@ pub struct AgreementOutcome {
 /// Compares predictions of a table with its measured values.
 ///
 /// # Errors
-/// The table cannot be read, a column is missing or holds text, or no row has both values.
-pub fn agreement(table: &Path, request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
-    let data = read_data(table)?;
+/// A column is missing or holds text, or no row has both values.
+pub fn agreement(data: &Data, request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
     let column = |name: &str| data.table.numbers(name).map_err(|error| data.told(error));
     let (measured, predicted) = (column(&request.measured)?, column(&request.predicted)?);
     let whole = |row: &usize| !measured[*row].is_nan() && !predicted[*row].is_nan();

@@ -1,6 +1,7 @@
 //! Groups of a table, and rows outside of them.
 
-use crate::regress::findings::{finding, lines_text};
+use crate::regress::findings::finding;
+use crate::rows::{GroupLoss, RowCount, lines_text};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_statistics::compare::group_summary::{Group, GroupSummary, Groups, summarize};
@@ -11,6 +12,29 @@ pub(crate) fn summaries(groups: &[Group], confidence: f64) -> Result<Vec<GroupSu
     described
         .collect::<Result<_, _>>()
         .map_err(statistics_error)
+}
+
+/// Rows with a value and a group, rows without, and these by groups.
+pub(crate) fn row_count(groups: &Groups) -> RowCount {
+    let lost = groups.groups.iter().filter(|group| group.missing > 0);
+    let mut by: Vec<GroupLoss> = lost
+        .map(|group| GroupLoss {
+            group: group.levels.join(", "),
+            left_out: group.missing,
+            rows: group.missing + group.values.len(),
+        })
+        .collect();
+    let outside = groups.ungrouped.len();
+    by.extend((outside > 0).then(|| GroupLoss {
+        group: String::new(),
+        left_out: outside,
+        rows: outside,
+    }));
+    RowCount {
+        rows: groups.groups.iter().map(|group| group.values.len()).sum(),
+        left_out: by.iter().map(|own| own.left_out).sum(),
+        left_out_by: by,
+    }
 }
 
 /// Errors of the statistics as errors of a request.

@@ -1,5 +1,6 @@
 //! What a comparison of groups finds.
 
+use crate::rows::RowCount;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
 use windfall_statistics::compare::group_summary::GroupSummary;
@@ -14,6 +15,9 @@ pub struct CompareOutcome {
     pub by: Vec<String>,
     /// The column that pairs them.
     pub paired: Option<String>,
+    /// Rows with a value and a group, and those without.
+    #[serde(flatten)]
+    pub count: RowCount,
     /// Confidence of all intervals.
     pub confidence: f64,
     /// The groups.

@@ -39,7 +39,14 @@ fn of_means(names: [&str; 2], found: &MeanDifference, n_pairs: Option<usize>) ->
     }
 }
 
-/// Pairs of groups and the method in words.
+/// Groups with a variance of their own, by their places.
+fn with_variance(groups: &[Vec<f64>]) -> Vec<usize> {
+    let places = 0..groups.len();
+    places.filter(|place| groups[*place].len() > 1).collect()
+}
+
+/// Pairs of groups and the method in words. A group of a single value has no variance of its
+/// own, and no pairs where one is needed.
 pub(crate) fn compare_pairs(
     names: &[String],
     groups: &[Vec<f64>],
@@ -57,6 +64,12 @@ pub(crate) fn compare_pairs(
         };
         let found = found.map_err(statistics_error)?;
         return Ok((vec![of_means([&names[0], &names[1]], &found, None)], words));
+    }
+    let own = with_variance(groups);
+    if method != PairMethod::Tukey && (2..groups.len()).contains(&own.len()) {
+        let names: Vec<String> = own.iter().map(|place| names[*place].clone()).collect();
+        let groups: Vec<Vec<f64>> = own.iter().map(|place| groups[*place].clone()).collect();
+        return compare_pairs(&names, &groups, method, confidence);
     }
     match method {
         PairMethod::Tukey => {

@@ -1,17 +1,19 @@
 //! `windfall compare`: groups of a table against each other.
 
-use crate::compare::group_outcome::{missing_findings, statistics_error, summaries};
+use crate::compare::group_outcome::{missing_findings, row_count, statistics_error, summaries};
 use crate::compare::outcome::{CompareOutcome, LetteredGroup, PairOutcome, StatisticTest};
 use crate::compare::pairs::{PairMethod, compare_paired, compare_pairs, shared};
 use crate::compare::summary::check_confidence;
 #[cfg(feature = "clap")]
 use crate::option_words::trimmed;
+use crate::reading::ReadingOptions;
 use crate::regress::findings::finding;
+use crate::rows::RowCount;
 use std::path::PathBuf;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::{Data, read_data};
+use windfall_files::table::data::Data;
 use windfall_statistics::accurate_sum::mean;
 use windfall_statistics::compare::compact_letters::compact_letters;
 use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
@@ -60,6 +62,9 @@ pub struct CompareRequest {
         arg(long, default_value_t = 0.95, value_name = "LEVEL")
     )]
     pub confidence: f64,
+    /// How the table is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// Columns whose names say that rows may repeat a specimen.
@@ -72,10 +77,11 @@ const SPECIMEN_COLUMNS: [&str; 5] = ["specimen", "fruit", "sample", "specimen_id
 /// groups, too few values, or no specimen that two groups share.
 pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error> {
     check_confidence(request.confidence)?;
-    let data = read_data(&request.table)?;
+    let data = request.reading.read(&request.table)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
     let mut groups =
         split_groups(&data.table, &by, &request.value).map_err(|error| data.told(error))?;
+    let count = row_count(&groups);
     let mut findings = missing_findings(&groups, &request.value, &request.by, &data.lines);
     findings.extend(data.left_out_finding());
     findings.extend(drop_empty(&mut groups));
@@ -90,7 +96,7 @@ pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error>
             ),
         ));
     }
-    match (&request.paired, &request.specimen) {
+    let mut outcome = match (&request.paired, &request.specimen) {
         (Some(column), _) => paired_outcome(request, &data, &groups, column, findings),
         (None, Some(column)) => {
             let means = specimen_means(&data, &groups, column)?;
@@ -110,7 +116,9 @@ pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error>
             findings.extend(repeated_finding(&data, &groups)?);
             unpaired_outcome(request, &groups.groups, findings)
         }
-    }
+    }?;
+    outcome.count = count;
+    Ok(outcome)
 }
 
 fn drop_empty(groups: &mut Groups) -> Option<FindingOutcome> {
@@ -143,6 +151,9 @@ fn unpaired_outcome(
             group.iter().map(move |value| value - centre)
         })
         .collect();
+    // Of a single value there is no variance: it stops no test of the others.
+    let several = values.iter().filter(|group| group.len() > 1);
+    let several: Vec<Vec<f64>> = several.cloned().collect();
     let brown_forsythe = brown_forsythe(&values).ok();
     let shapiro_wilk = shapiro_of(&residuals);
     findings.extend(variance_finding(brown_forsythe, request));
@@ -156,10 +167,11 @@ fn unpaired_outcome(
         value: request.value.clone(),
         by: request.by.clone(),
         paired: None,
+        count: RowCount::default(),
         confidence: request.confidence,
         groups: lettered(described, letters),
         anova: Some(anova),
-        welch: welch_anova(&values).ok(),
+        welch: welch_anova(&several).ok(),
         levene: levene(&values).ok(),
         brown_forsythe,
         bartlett: bartlett(&values).ok().map(|test| StatisticTest {
@@ -212,6 +224,7 @@ fn paired_outcome(
         value: request.value.clone(),
         by: request.by.clone(),
         paired: Some(column.to_owned()),
+        count: RowCount::default(),
         confidence: request.confidence,
         groups: lettered(described, letters),
         anova: None,
@@ -383,7 +396,8 @@ fn single_finding(names: &[String], groups: &[Vec<f64>]) -> Option<FindingOutcom
         finding(
             "single",
             format!(
-                "one value only in {}: no variance of its own, no Welch's test",
+                "one value only in {}: without a variance of its own it is left out of Welch's \
+                 test and of pairs that need one",
                 single.join("; ")
             ),
         )

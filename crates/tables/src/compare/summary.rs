@@ -1,14 +1,16 @@
 //! `windfall summary`: what the values of a table look like, group by group.
 
-use crate::compare::group_outcome::{missing_findings, statistics_error, summaries};
+use crate::compare::group_outcome::{missing_findings, row_count, statistics_error, summaries};
 #[cfg(feature = "clap")]
 use crate::option_words::trimmed;
+use crate::reading::ReadingOptions;
+use crate::rows::RowCount;
 use serde::Serialize;
 use std::path::PathBuf;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::{Data, read_data};
+use windfall_files::table::data::Data;
 use windfall_statistics::compare::group_summary::{GroupSummary, split_groups};
 use windfall_statistics::table::Cells;
 
@@ -31,6 +33,9 @@ pub struct SummaryRequest {
         arg(long, default_value_t = 0.95, value_name = "LEVEL")
     )]
     pub confidence: f64,
+    /// How the table is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// Every group of every value.
@@ -51,6 +56,9 @@ pub struct SummaryOutcome {
 pub struct ValueSummary {
     /// The column.
     pub value: String,
+    /// Rows with a value and a group, and those without.
+    #[serde(flatten)]
+    pub count: RowCount,
     /// Its groups.
     pub groups: Vec<GroupSummary>,
 }
@@ -61,7 +69,7 @@ pub struct ValueSummary {
 /// The table cannot be read, a column is not there or holds text.
 pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error> {
     check_confidence(request.confidence)?;
-    let data = read_data(&request.table)?;
+    let data = request.reading.read(&request.table)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
     let mut outcome = SummaryOutcome {
         by: request.by.clone(),
@@ -81,6 +89,7 @@ pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error
         outcome.values.push(ValueSummary {
             groups: summaries(&groups.groups, request.confidence)?,
             value,
+            count: row_count(&groups),
         });
     }
     Ok(outcome)

@@ -3,6 +3,7 @@
 use crate::compare::agreement::AgreementOutcome;
 use crate::compare::outcome::{CompareOutcome, PairOutcome, StatisticTest};
 use crate::compare::summary::SummaryOutcome;
+use crate::rows::{RowCount, rows_text};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::columns::{Column, csv_of_rows, given, strings, text_of_rows};
@@ -41,6 +42,14 @@ fn order_cells(group: &GroupSummary) -> Vec<String> {
     cells
 }
 
+/// A column of values, with the rows that were left out.
+fn heading(value: &str, count: &RowCount) -> String {
+    match count.left_out {
+        0 => value.to_owned(),
+        _ => format!("{value}: {}", rows_text(count)),
+    }
+}
+
 /// Group summaries as text.
 pub fn text_of_summary(outcome: &SummaryOutcome) -> String {
     let by = match outcome.by.is_empty() {
@@ -56,7 +65,8 @@ pub fn text_of_summary(outcome: &SummaryOutcome) -> String {
         let spread = page_tables(&spread, &rows, &[0]);
         let rows: Vec<Vec<String>> = groups().map(order_cells).collect();
         let order = page_tables(&order, &rows, &[0]);
-        text += &format!("{}\n\n{spread}\n\n{order}\n\n", value.value);
+        let heading = heading(&value.value, &value.count);
+        text += &format!("{heading}\n\n{spread}\n\n{order}\n\n");
     }
     text += &format!(
         "from, to: {} interval of the mean; CV: SD over mean\n",
@@ -115,7 +125,7 @@ pub fn text_of_compare(outcome: &CompareOutcome) -> String {
         cells
     });
     let left = [0, header.len() - 1];
-    let mut text = format!("{}\n\n", outcome.value);
+    let mut text = heading(&outcome.value, &outcome.count) + "\n\n";
     text += &page_tables(&header, &rows.collect::<Vec<_>>(), &left);
     text += &format!(
         "\n\nfrom, to: {} interval of the mean; groups that share a letter do not differ\n",

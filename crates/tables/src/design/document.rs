@@ -2,7 +2,6 @@
 
 use crate::design::factor::fifteen_digits;
 use crate::design::run::DesignOutcome;
-use crate::regress::findings::finding;
 use serde::Serialize;
 use windfall_design::kind::{Design, Factor};
 use windfall_design::quality::DesignQuality;
@@ -121,7 +120,7 @@ pub fn design_document(outcome: &DesignOutcome) -> DesignDocument {
         residual_df: quality.runs - quality.terms,
     });
     let findings = design.findings.iter();
-    let findings = findings.map(|found| finding(found.code(), found.to_string()));
+    let findings = findings.map(|found| FindingOutcome::new(found.code(), found.to_string()));
     DesignDocument {
         kind: design.kind.clone(),
         factors: factor_documents(&design.factors),

@@ -109,6 +109,7 @@ fn coded_table(factors: &[Factor], points: &[Vec<f64>]) -> Table {
             false => Cells::Categories(Categories {
                 levels: factor.categories.clone(),
                 codes: values.map(|value| factor.category_place(value)).collect(),
+                ordered: true,
             }),
         };
         Column { name, cells }

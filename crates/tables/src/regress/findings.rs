@@ -1,12 +1,19 @@
 //! What a reader of a linear model must know.
 
 use crate::regress::outcome::StepOutcome;
+use crate::rows::{GroupLoss, RowCount, lines_text};
+use std::collections::BTreeMap;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::number::plain;
+use windfall_files::text::statistic::probability;
+use windfall_statistics::model::anova::LackOfFit;
+use windfall_statistics::model::encoding::Encoding;
+use windfall_statistics::model::formula_syntax::Kind;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_frame::ModelFrame;
 use windfall_statistics::model::reduced::Aliased;
 use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
+use windfall_statistics::table::Table;
 
 /// Variance inflation that is reported (Montgomery, Peck & Vining, Linear Regression, §9.4.2).
 const INFLATED: f64 = 10.0;
@@ -14,23 +21,16 @@ const INFLATED: f64 = 10.0;
 /// Condition beyond which digits are lost.
 const ILL_CONDITIONED: f64 = 1e7;
 
-/// Lines named in a message.
-const NAMED: usize = 8;
+/// Levels of a column that numbers may name.
+const FEWEST_CODES: usize = 3;
+const MOST_CODES: usize = 50;
+
+/// Probability below which a lack of fit is told.
+const LACKING: f64 = 0.05;
 
 /// A finding.
 pub fn finding(code: &str, message: String) -> FindingOutcome {
     FindingOutcome::new(code, message)
-}
-
-/// Lines in words, not too many.
-pub(crate) fn lines_text(lines: &[usize]) -> String {
-    let named: Vec<String> = lines.iter().take(NAMED).map(usize::to_string).collect();
-    let more = match lines.len() > NAMED {
-        true => format!(" and {} more", lines.len() - NAMED),
-        false => String::new(),
-    };
-    let word = if lines.len() == 1 { "line" } else { "lines" };
-    format!("{word} {}{more}", named.join(", "))
 }
 
 /// Rows with missing cells.
@@ -60,6 +60,93 @@ pub(crate) fn left_out_finding(
         )
     };
     columns.iter().map(message).collect()
+}
+
+/// Rows of a table by the levels of a model's first category.
+pub(crate) fn row_count(
+    frame: &ModelFrame,
+    table: &Table,
+    left_out: &[(usize, String)],
+) -> RowCount {
+    RowCount {
+        rows: table.rows() - left_out.len(),
+        left_out: left_out.len(),
+        left_out_by: losses(frame, table, left_out),
+    }
+}
+
+fn losses(frame: &ModelFrame, table: &Table, left_out: &[(usize, String)]) -> Vec<GroupLoss> {
+    let category = frame.atoms.iter().find_map(|atom| match atom {
+        Encoding::Category { column, .. } => table.column(column).ok(),
+        _ => None,
+    });
+    let Some(categories) = category.map(|own| own.cells.categories()) else {
+        return Vec::new();
+    };
+    let name = |code: Option<usize>| code.map_or("", |code| &categories.levels[code]);
+    let mut lost: BTreeMap<Option<usize>, usize> = BTreeMap::new();
+    for (row, _) in left_out {
+        *lost.entry(categories.codes[*row]).or_default() += 1;
+    }
+    let rows = |code| categories.codes.iter().filter(|own| **own == code).count();
+    let loss = |(code, left_out): (Option<usize>, usize)| GroupLoss {
+        group: name(code).to_owned(),
+        left_out,
+        rows: rows(code),
+    };
+    lost.into_iter().map(loss).collect()
+}
+
+/// Columns of numbers that look like names of levels: 1, 2, 3 … with several rows each.
+pub(crate) fn code_findings(frame: &ModelFrame, table: &Table) -> Vec<FindingOutcome> {
+    let numbers = frame.atoms.iter().filter_map(|atom| match atom {
+        Encoding::Numbers { name, node } => match &node.kind {
+            Kind::Name(column) => Some((name, table.numbers(column).ok()?)),
+            _ => None,
+        },
+        _ => None,
+    });
+    let found = numbers.filter_map(|(name, values)| {
+        let count = codes(values)?;
+        Some(finding(
+            "codes",
+            format!(
+                "{name} holds the whole numbers 1 to {count}, and is taken as a number with one \
+                 slope; if they name levels (blocks, days, lots), write C({name})"
+            ),
+        ))
+    });
+    found.collect()
+}
+
+/// Largest of the numbers 1, 2, 3 … n, where values are nothing else, and several rows each.
+fn codes(values: &[f64]) -> Option<usize> {
+    let mut known: Vec<f64> = values.iter().copied().filter(|own| !own.is_nan()).collect();
+    let rows = known.len();
+    known.sort_by(f64::total_cmp);
+    known.dedup();
+    let count = known.len();
+    let in_turn = known
+        .iter()
+        .enumerate()
+        .all(|(place, own)| *own == (place + 1) as f64);
+    (in_turn && (FEWEST_CODES..=MOST_CODES).contains(&count) && rows >= 2 * count).then_some(count)
+}
+
+/// A lack of fit that chance does not explain.
+pub(crate) fn lack_finding(lack_of_fit: Option<&LackOfFit>) -> Option<FindingOutcome> {
+    let lack = &lack_of_fit?.lack;
+    (lack.p < LACKING).then(|| {
+        finding(
+            "lack-of-fit",
+            format!(
+                "repeated rows scatter less than the model misses them by (p {}): a term is \
+                 missing, or repeats were made closer together than other rows (within one batch \
+                 or day)",
+                probability(lack.p)
+            ),
+        )
+    })
 }
 
 /// Columns that depend on others.

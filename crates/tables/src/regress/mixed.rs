@@ -1,13 +1,16 @@
 //! `windfall regress` with random effects: a linear mixed model.
 
-use crate::regress::findings::{aliased_findings, finding, left_out_finding};
+use crate::regress::findings::{
+    aliased_findings, code_findings, finding, left_out_finding, row_count,
+};
 use crate::regress::outcome::{RangeOutcome, ranges_of};
 use crate::regress::request::{FreedomMethod, RegressRequest};
+use crate::rows::RowCount;
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::{Data, read_data};
+use windfall_files::table::data::Data;
 use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
@@ -85,10 +88,9 @@ pub struct MixedOutcome {
     pub method: &'static str,
     /// "Satterthwaite" or "Kenward-Roger".
     pub df_method: &'static str,
-    /// Rows that were used.
-    pub rows: usize,
-    /// Rows that were left out for missing cells.
-    pub left_out: usize,
+    /// Rows that were used and left out, by the levels of the model's first category.
+    #[serde(flatten)]
+    pub count: RowCount,
     /// Groups of each random term.
     pub groups: Vec<(String, usize)>,
     /// Fixed effects.
@@ -197,6 +199,7 @@ pub fn regress_mixed(
     let (variances, profile_findings) = variances(&fitted.fit, request.confidence)?;
     let mut findings = left_out_finding(&left_out, &data.lines);
     findings.extend(data.left_out_finding());
+    findings.extend(code_findings(&fitted.rows.frame, &data.table));
     findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
@@ -214,8 +217,7 @@ pub fn regress_mixed(
             None => "Satterthwaite",
             Some(_) => "Kenward-Roger",
         },
-        rows: kept.len(),
-        left_out: left_out.len(),
+        count: row_count(&fitted.rows.frame, &data.table, &left_out),
         groups: fitted
             .terms
             .iter()
@@ -413,7 +415,7 @@ fn predictions(
     let Some(path) = &request.predict else {
         return Ok(Vec::new());
     };
-    let asked = read_data(path)?;
+    let asked = request.reading.read(path)?;
     let x = prediction_rows(&fitted.rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let rows = NewRows {
         x: x.select_columns(&fitted.columns),

@@ -2,6 +2,7 @@
 
 use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
 use crate::regress::text::csv_of_terms;
+use crate::rows::rows_text;
 use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, text_of_rows};
 use windfall_files::text::number::plain;
@@ -65,16 +66,18 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
     let groups: Vec<String> = groups
         .map(|(name, count)| format!("{count} of {name}"))
         .collect();
-    let left_out = match outcome.left_out {
-        0 => String::new(),
-        n => format!(", {n} left out"),
+    let rows = rows_text(&outcome.count);
+    let formula = |here: bool| match here {
+        true => outcome.formula.clone() + "\n",
+        false => String::new(),
     };
+    let whole = outcome.count.left_out == 0;
     let mut text = format!(
-        "{}\n{} rows{left_out}; groups: {}; {}\n\n",
-        outcome.formula,
-        outcome.rows,
+        "{}{rows}; groups: {}; {}\n{}\n",
+        formula(whole),
         groups.join(", "),
-        outcome.method
+        outcome.method,
+        formula(!whole),
     );
     text += &format!(
         "{}\n\nTests of the terms, each after all others ({}):\n{}\n\n\

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "clap")]
 use crate::option_words::{anova_type, contrast, direction, likelihood};
+use crate::reading::ReadingOptions;
 use std::path::PathBuf;
 
 pub use windfall_statistics::mixed::fit::MixedMethod;
@@ -96,6 +97,9 @@ pub struct RegressRequest {
     /// Table with the columns of the model, to be predicted
     #[cfg_attr(feature = "clap", arg(long, value_name = "TABLE", value_hint = clap::ValueHint::FilePath))]
     pub predict: Option<PathBuf>,
+    /// How the table is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 impl RegressRequest {
@@ -121,6 +125,7 @@ impl RegressRequest {
             seed: 1,
             confidence: 0.95,
             predict: None,
+            reading: ReadingOptions::default(),
         }
     }
 

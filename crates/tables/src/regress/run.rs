@@ -1,17 +1,21 @@
 //! `windfall regress`: a table and a formula → a linear model.
 
-use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
+use crate::regress::findings::{
+    aliased_findings, code_findings, finding, fit_findings, lack_finding, left_out_finding,
+    row_count,
+};
 use crate::regress::mixed::{MixedOutcome, regress_mixed};
 use crate::regress::outcome::{
     PredictionOutcome, RangeOutcome, RowOutcome, StepOutcome, ranges_of, rows_of,
 };
 use crate::regress::request::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::regress::residuals::{ResidualOutcome, residual_findings, residual_tests};
+use crate::rows::RowCount;
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::{Data, read_data};
+use windfall_files::table::data::Data;
 use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
@@ -34,10 +38,9 @@ pub struct RegressOutcome {
     pub formula: String,
     /// What is modelled.
     pub response: String,
-    /// Rows that were used.
-    pub rows: usize,
-    /// Rows that were left out for missing cells.
-    pub left_out: usize,
+    /// Rows that were used and left out, by the levels of the model's first category.
+    #[serde(flatten)]
+    pub count: RowCount,
     /// Estimates.
     pub terms: Vec<Coefficient>,
     /// Whether their standard errors are HC3.
@@ -95,7 +98,7 @@ pub enum AnyRegressOutcome {
 /// The table or the formula cannot be read; too few rows; a response of one value.
 pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     check(request)?;
-    let data = read_data(&request.table)?;
+    let data = request.reading.read(&request.table)?;
     let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
     let mut text = request.formula(&names);
     for random in &request.random {
@@ -218,6 +221,7 @@ fn outcome(
         .flatten();
     let mut findings = left_out_finding(&rows.left_out, &data.lines);
     findings.extend(data.left_out_finding());
+    findings.extend(code_findings(&rows.frame, &data.table));
     findings.extend(aliased_findings(&rows.frame, &fit.aliased));
     findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
     if request.folds > 0 && validation.is_none() {
@@ -228,13 +232,14 @@ fn outcome(
                 .to_owned(),
         ));
     }
+    let lack_of_fit = lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df);
+    findings.extend(lack_finding(lack_of_fit.as_ref()));
     let residuals = residual_tests(rows, fit);
     findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {
         formula: formula_of(formula, rows, selection),
         response: formula.response.as_ref().map(spelling).unwrap_or_default(),
-        rows: fit.rows,
-        left_out: rows.left_out.len(),
+        count: row_count(&rows.frame, &data.table, &rows.left_out),
         terms,
         robust: request.robust,
         covariance: match request.robust {
@@ -248,7 +253,7 @@ fn outcome(
         total: fit.total(),
         anova_type: request.anova.roman(),
         anova: variance_of(request, data, formula, rows, reduced, selection)?,
-        lack_of_fit: lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df),
+        lack_of_fit,
         vif,
         removed: steps
             .iter()
@@ -314,7 +319,7 @@ fn predictions(
     let Some(path) = &request.predict else {
         return Ok(Vec::new());
     };
-    let asked = read_data(path)?;
+    let asked = request.reading.read(path)?;
     let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let found = predict(fit, &x).into_iter().zip(&asked.lines);
     Ok(found

@@ -3,6 +3,7 @@
 use crate::regress::outcome::{PredictionOutcome, StepOutcome};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
+use crate::rows::rows_text;
 use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, given, text_of_rows};
 use windfall_files::text::statistic::{freedom, number, probability};
@@ -74,7 +75,9 @@ pub(crate) fn anova_text(
     let mut table: Vec<Vec<String>> = rows.iter().map(tested).collect();
     table.push(cells("residual", residual, untested()));
     if let Some(found) = lack_of_fit {
-        table.push(cells("  lack of fit", sum(&found.lack), untested()));
+        if found.lack.df > 0.0 {
+            table.push(cells("  lack of fit", sum(&found.lack), untested()));
+        }
         table.push(cells("  pure error", found.pure_error, untested()));
     }
     table.push(cells("total", total, untested()));
@@ -96,6 +99,11 @@ pub(crate) fn lack_of_fit_text(lack_of_fit: Option<&LackOfFit>, unrepeated: &str
     let Some(LackOfFit { lack, pure_error }) = lack_of_fit else {
         return format!("lack of fit: {unrepeated}, so there is no pure error to test against\n");
     };
+    if lack.df == 0.0 {
+        return "lack of fit: the model has a coefficient for every setting, so no degrees of \
+                freedom are left for it\n"
+            .to_owned();
+    }
     format!(
         "lack of fit: F {} on {} and {}, p {}\n",
         number(lack.f),
@@ -108,11 +116,11 @@ pub(crate) fn lack_of_fit_text(lack_of_fit: Option<&LackOfFit>, unrepeated: &str
 /// A model as text.
 pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     let quality = &outcome.quality;
-    let mut text = format!("{}\n{} rows", outcome.formula, outcome.rows);
-    if outcome.left_out > 0 {
-        text += &format!(", {} left out", outcome.left_out);
-    }
-    text += "\n\n";
+    let rows = rows_text(&outcome.count);
+    let mut text = match outcome.count.left_out {
+        0 => format!("{}\n{rows}\n\n", outcome.formula),
+        _ => format!("{rows}\n{}\n\n", outcome.formula),
+    };
     if !outcome.steps.is_empty() {
         text += &(steps_text(&outcome.steps) + "\n\n");
     }

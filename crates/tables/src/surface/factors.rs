@@ -1,7 +1,8 @@
 //! Coding of a table's factors, and where it came from.
 
 use crate::design::coding::coding_of_design;
-use crate::regress::findings::{finding, lines_text};
+use crate::regress::findings::finding;
+use crate::rows::lines_text;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;

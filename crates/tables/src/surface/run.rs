@@ -3,7 +3,10 @@
 use crate::design::coding::number_factors;
 #[cfg(feature = "clap")]
 use crate::option_words::{anova_type, members};
-use crate::regress::findings::{aliased_findings, finding, fit_findings, left_out_finding};
+use crate::reading::ReadingOptions;
+use crate::regress::findings::{
+    aliased_findings, finding, fit_findings, lack_finding, left_out_finding,
+};
 use crate::regress::outcome::rows_of;
 use crate::regress::run::check_part;
 use crate::surface::factors::{coded_factors, coding_findings, coding_text};
@@ -25,7 +28,7 @@ use windfall_draw::files::{FigureFolder, NamedFigure, write_figures, write_paint
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::{Data, read_data};
+use windfall_files::table::data::Data;
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::model::anova::{Anova, anova};
 use windfall_statistics::model::expression::values;
@@ -96,6 +99,9 @@ pub struct SurfaceRequest {
     /// Contours, surfaces, effects, perturbation, desirability, and model against runs
     #[cfg_attr(feature = "clap", command(flatten))]
     pub figures: Option<FigureFolder>,
+    /// How the table is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 impl SurfaceRequest {
@@ -116,6 +122,7 @@ impl SurfaceRequest {
             grid: None,
             grid_points: 41,
             figures: None,
+            reading: ReadingOptions::default(),
         }
     }
 
@@ -157,7 +164,7 @@ pub fn fitted_surfaces(
 ) -> Result<(SurfaceOutcome, FittedSurfaces), Error> {
     let modelled = request.modelled()?;
     check_part("--confidence", request.confidence)?;
-    let mut data = read_data(&request.table)?;
+    let mut data = request.reading.read(&request.table)?;
     let factors = factor_names(request, &data)?;
     let mut findings = keep_complete(request, &factors, &mut data)?;
     let coded = coded_factors(&data, &factors, &request.ranges)?;
@@ -368,6 +375,8 @@ fn model_of(
     let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
     let mut findings = aliased_findings(&surface.frame, &fit.aliased);
     findings.extend(fit_findings(fit, &influence, &vif, &data.lines, &[]));
+    let lack_of_fit = surface_lack_of_fit(surface, &coded.values, y);
+    findings.extend(lack_finding(lack_of_fit.as_ref()));
     if !is_hierarchical(&surface.terms.monomials) {
         findings.push(finding(
             "not-hierarchical",
@@ -396,7 +405,7 @@ fn model_of(
         cv_percent: 100.0 * quality.sigma / mean,
         quality,
         anova_type: request.anova.roman(),
-        lack_of_fit: surface_lack_of_fit(surface, &coded.values, y),
+        lack_of_fit,
         canonical: canonical_of(surface, coded),
         ridge: ridge_of(surface, coded),
         influence: rows_of(influence, &data.lines),

@@ -20,7 +20,7 @@ pub fn run_summary(arguments: &SummaryArguments) -> anyhow::Result<()> {
 pub fn run_compare(arguments: &CompareArguments) -> anyhow::Result<()> {
     let (format, request) = (arguments.format, &arguments.request);
     if let Some(asked) = &arguments.agreement {
-        let outcome = agreement(&request.table, asked)?;
+        let outcome = agreement(&request.reading.read(&request.table)?, asked)?;
         return show(format, &outcome, text_of_agreement, csv_of_agreement);
     }
     let outcome = compare_groups(request)?;

@@ -142,6 +142,7 @@ export interface GoodnessOutcome {
 }
 export interface GridGiven { x: number[]; y: number[]; values: number[]; }
 export interface GridOutcome { columns: string[]; rows: number[][]; }
+export interface GroupLoss { group: string; left_out: number; rows: number; }
 export interface GroupOutcome {
   group: string | null; law: string; impacts: number; left_out: number; specimens: number;
   parameters: Record<string, SpreadOutcome>; derived: Record<string, SpreadOutcome>;
@@ -225,13 +226,13 @@ export interface MeasuredOutcome {
 export interface MeasuredValue {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string;
 }
-export interface MixedOutcome {
-  formula: string; response: string; method: string; df_method: string; rows: number; left_out: number;
-  groups: [string, number][]; terms: TermOutcome[]; covariance: number[][]; ranges: ModelRange[]; anova: MixedTest[];
-  variances: VarianceOutcome[]; r2: number; r2_adjusted: number | null; r2_conditional: number; intraclass: number[];
-  log_likelihood: number; criterion: number; aic: number; aicc: number; bic: number; removed: string[];
-  effects: EffectOutcome[]; predictions: MixedPredictionOutcome[]; findings: FindingOutcome[];
-}
+export type MixedOutcome = RowCount & ({
+  formula: string; response: string; method: string; df_method: string; groups: [string, number][];
+  terms: TermOutcome[]; covariance: number[][]; ranges: ModelRange[]; anova: MixedTest[]; variances: VarianceOutcome[];
+  r2: number; r2_adjusted: number | null; r2_conditional: number; intraclass: number[]; log_likelihood: number;
+  criterion: number; aic: number; aicc: number; bic: number; removed: string[]; effects: EffectOutcome[];
+  predictions: MixedPredictionOutcome[]; findings: FindingOutcome[];
+});
 export interface MixedPrediction {
   population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
 }
@@ -310,12 +311,12 @@ export type RegressAnswer = AnyRegressOutcome & { command: string; };
 export interface RegressGiven {
   table: string; response: string; terms: string; random?: string[]; select?: boolean;
 }
-export type RegressOutcome = QualityOutcome & ({
-  formula: string; response: string; rows: number; left_out: number; terms: TermOutcome[]; robust: boolean;
-  covariance: number[][]; ranges: ModelRange[]; model: WholeModel; residual: SumOfSquares; total: SumOfSquares;
-  anova_type: string; anova: AnovaOutcome[]; lack_of_fit: LackOfFitOutcome | null; vif: InflationOutcome[];
-  removed: StepOutcome[]; steps: StepOutcome[]; cross_validation: CrossValidationOutcome | null;
-  residuals: ModelResiduals; influence: RowOutcome[]; predictions: PredictionOutcome[]; findings: FindingOutcome[];
+export type RegressOutcome = RowCount & QualityOutcome & ({
+  formula: string; response: string; terms: TermOutcome[]; robust: boolean; covariance: number[][];
+  ranges: ModelRange[]; model: WholeModel; residual: SumOfSquares; total: SumOfSquares; anova_type: string;
+  anova: AnovaOutcome[]; lack_of_fit: LackOfFitOutcome | null; vif: InflationOutcome[]; removed: StepOutcome[];
+  steps: StepOutcome[]; cross_validation: CrossValidationOutcome | null; residuals: ModelResiduals;
+  influence: RowOutcome[]; predictions: PredictionOutcome[]; findings: FindingOutcome[];
 });
 export interface ReportFiles { page: string; files: string[]; impacts: number; failed: number; }
 export interface ResidualOutcome {
@@ -325,6 +326,7 @@ export interface ResidualOutcome {
 export interface ResponseGiven { name: string; model: string; }
 export interface ResponseMap { response: string; map: ContourMap; errors: number[]; }
 export interface RidgeOutcome { of: string; radius: number; actual: number[]; value: number; }
+export interface RowCount { rows: number; left_out: number; left_out_by: GroupLoss[]; }
 export interface RowInfluence {
   observed: number; fitted: number; residual: number; leverage: number; standardised: number;
   studentised: number | null; cook: number | null; dffits: number;
