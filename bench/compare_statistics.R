@@ -172,6 +172,52 @@ check_mixed("days by ML", days, y ~ day + (1 + day | subject), TRUE)
 check_mixed("impacts", impacts, k ~ V * variety + R + (1 | specimen))
 check_mixed("impacts by ML", impacts, k ~ V + R + (1 | specimen), TRUE)
 
+# Central composite designs in blocks, as windfall makes them: `surface` against lm with the
+# block, pure error from rows with equal settings within a block.
+check_blocks <- function(group, factors, options) {
+  path <- file.path(folder, paste0(group, ".csv"))
+  unlink(path)
+  names <- letters[seq_len(factors)]
+  ranges <- paste("--factor", shQuote(paste0(names, "=", seq_len(factors), "..", 2 * seq_len(factors) + 1)))
+  stopifnot(system2(windfall, c("design ccd", ranges, options, "--seed 5 --out", shQuote(path)), stdout = FALSE) == 0)
+  header <- grep("^#", readLines(path), value = TRUE)
+  table <- read.csv(path, comment.char = "#")
+  coded <- as.matrix(table[paste0(names, "_coded")])
+  day <- rnorm(max(table$block), sd = 3)
+  table$y <- signif(20 + day[table$block] + coded %*% seq_len(factors) - 1.3 * rowSums(coded^2) + coded[, 1] * coded[, 2] + rnorm(nrow(table)), 6)
+  writeLines(c(header, capture.output(write.csv(table, row.names = FALSE, quote = FALSE))), path)
+  output <- system2(windfall, c("surface", shQuote(path), "--response y --anova 1 --format json"), stdout = TRUE)
+  found <- fromJSON(paste(output, collapse = "\n"))$responses
+  names(table)[match(paste0(names, "_coded"), names(table))] <- LETTERS[seq_len(factors)]
+  pairs <- combn(LETTERS[seq_len(factors)], 2, paste, collapse = ":")
+  terms <- c(LETTERS[seq_len(factors)], pairs, paste0("I(", LETTERS[seq_len(factors)], "^2)"))
+  table$block <- factor(table$block)
+  fit <- lm(reformulate(c("block", terms), "y", env = environment()), table, contrasts = list(block = "contr.sum"))
+  own <- summary(fit)$coefficients
+  mine <- c("(Intercept)", terms)
+  limit <- 1e-8
+  compare(group, "estimate", found$terms[[1]]$coded, unname(coef(fit)[match(mine, reorder_names(names(coef(fit)), mine))]), limit)
+  compare(group, "standard error", found$terms[[1]]$se, unname(own[match(mine, reorder_names(rownames(own), mine)), 2]), limit)
+  compare(group, "residual SS", found$residual$ss, sum(resid(fit)^2), limit)
+  compare(group, "block SS", found$blocks$ss, anova(fit)["block", "Sum Sq"], limit)
+  compare(group, "model SS", found$model$ss, anova(lm(y ~ block, table), fit)[2, "Sum of Sq"], limit)
+  key <- interaction(table$block, do.call(paste, as.data.frame(round(coded, 9))), drop = TRUE)
+  pure <- sum((table$y - ave(table$y, key))^2)
+  compare(group, "pure error SS", found$lack_of_fit$pure_error$ss, pure, limit)
+  effects <- c(coef(fit)[grep("^block", names(coef(fit)))])
+  compare(group, "blocks", found$blocks$effects[[1]]$effect, unname(c(effects, -sum(effects))), limit)
+}
+reorder_names <- function(found, wanted) {
+  # R may write an interaction the other way round.
+  turned <- vapply(strsplit(found, ":"), function(own) paste(rev(own), collapse = ":"), "")
+  ifelse(turned %in% wanted, turned, found)
+}
+check_blocks("ccd of 2 in 2 blocks", 2, "--blocks 2")
+check_blocks("ccd of 3 in 2 blocks", 3, "--blocks 2")
+check_blocks("ccd of 3 in 3 blocks", 3, "--blocks 3")
+check_blocks("ccd of 4 in 3 blocks", 4, "--blocks 3")
+check_blocks("ccd of 5 in 5 blocks", 5, "--blocks 5")
+
 values <- do.call(rbind, worst)
 colnames(values) <- c("difference", "limit")
 cat(sprintf("%-52s %10s %8s\n", "", "largest", "limit"))

@@ -36,6 +36,7 @@ mod scene;
 mod serve;
 mod several_contacts;
 mod stopped_runs;
+mod surface_blocks;
 mod tables;
 mod user_laws;
 mod velocities;

@@ -63,7 +63,18 @@ pub struct Anova {
 ///
 /// * `terms`: positions of the terms of the frame that are in the model
 pub fn anova(frame: &ModelFrame, reduced: &Reduced, terms: &[usize], kind: AnovaType) -> Anova {
-    let base: Vec<usize> = if frame.intercept { vec![0] } else { Vec::new() };
+    anova_within((frame, reduced), &[], terms, kind)
+}
+
+/// [`anova`] with the columns of blocks, which stand before all terms.
+pub fn anova_within(
+    (frame, reduced): (&ModelFrame, &Reduced),
+    blocks: &[usize],
+    terms: &[usize],
+    kind: AnovaType,
+) -> Anova {
+    let base = frame.intercept.then_some(0).into_iter();
+    let base: Vec<usize> = base.chain(blocks.iter().copied()).collect();
     // What is aliased in the whole model is in none: else every column that it
     // depends on would explain nothing after it.
     let every = terms

@@ -29,6 +29,8 @@ pub struct LinearFit {
     pub rows: usize,
     /// Whether the model has an intercept.
     pub intercept: bool,
+    /// What blocks of runs take up, which is no part of the model.
+    pub blocks: SumOfSquares,
     /// Sum of squares of the residuals.
     pub residual_ss: f64,
     /// Degrees of freedom of the residuals.
@@ -121,6 +123,7 @@ pub fn fit_reduced(
         inverse_triangle: solved.inverse,
         rows,
         intercept,
+        blocks: SumOfSquares { ss: 0.0, df: 0.0 },
         residual_ss,
         residual_df,
         total_ss,
@@ -299,14 +302,31 @@ impl LinearFit {
             .collect()
     }
 
-    /// Model sum of squares.
-    pub fn model_ss(&self) -> f64 {
-        self.total_ss - self.residual_ss
+    /// The same fit with some of its columns as blocks of runs: what they take up before the
+    /// other columns is part of neither the model nor the variation that it describes.
+    pub fn in_blocks(mut self, reduced: &Reduced, columns: &[usize]) -> Self {
+        let base: Vec<usize> = self.intercept.then_some(0).into_iter().collect();
+        let solved = reduced.solve(&[&base[..], columns].concat());
+        self.blocks = SumOfSquares {
+            ss: (self.total_ss - solved.residual.value()).max(0.0),
+            df: (solved.columns.len() - base.len()) as f64,
+        };
+        self
     }
 
-    /// Degrees of freedom of the model, without the intercept.
+    /// Model sum of squares.
+    pub fn model_ss(&self) -> f64 {
+        self.described() - self.residual_ss
+    }
+
+    /// Sum of squares of the response within blocks.
+    fn described(&self) -> f64 {
+        self.total_ss - self.blocks.ss
+    }
+
+    /// Degrees of freedom of the model, without the intercept and blocks.
     pub fn model_df(&self) -> usize {
-        self.columns.len() - usize::from(self.intercept)
+        self.columns.len() - usize::from(self.intercept) - self.blocks.df as usize
     }
 
     /// Residual variance; NaN without degrees of freedom.
@@ -341,7 +361,7 @@ impl LinearFit {
     pub fn total(&self) -> SumOfSquares {
         SumOfSquares {
             ss: self.total_ss,
-            df: (self.residual_df + self.model_df()) as f64,
+            df: (self.residual_df + self.model_df()) as f64 + self.blocks.df,
         }
     }
 
@@ -353,7 +373,8 @@ impl LinearFit {
     /// How good it is.
     pub fn quality(&self, y: &[f64]) -> Quality {
         let (rows, count) = (self.rows as f64, self.columns.len() as f64);
-        let total_df = rows - f64::from(u8::from(self.intercept));
+        let total_df = rows - f64::from(u8::from(self.intercept)) - self.blocks.df;
+        let total_ss = self.described();
         let press = press(&self.residuals, &self.leverages);
         let fitted = self.fitted(y);
         let (low, high) = fitted
@@ -366,10 +387,10 @@ impl LinearFit {
         let parameters = count + 1.0;
         let aic = 2.0 * parameters - 2.0 * log_likelihood;
         Quality {
-            r2: 1.0 - self.residual_ss / self.total_ss,
-            r2_adjusted: 1.0 - variance / (self.total_ss / total_df),
+            r2: 1.0 - self.residual_ss / total_ss,
+            r2_adjusted: 1.0 - variance / (total_ss / total_df),
             press,
-            r2_predicted: 1.0 - press / self.total_ss,
+            r2_predicted: 1.0 - press / total_ss,
             adequate_precision: (high - low) / (count * variance / rows).sqrt(),
             sigma: variance.sqrt(),
             log_likelihood,

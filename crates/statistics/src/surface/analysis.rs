@@ -2,11 +2,13 @@
 
 use crate::error::Error;
 use crate::model::anova::{LackOfFit, lack_of_fit};
+use crate::model::contrast::Contrast;
 use crate::model::linear_model::{LinearFit, Prediction, fit_reduced, predict};
 use crate::model::model_frame::{ModelFrame, TermColumns};
 use crate::model::reduced::{Reduced, reduce};
 use crate::surface::coding::FactorCoding;
 use crate::surface::terms::{Monomial, SurfaceTerms, monomial_name, monomial_value};
+use crate::table::Categories;
 use nalgebra::{DMatrix, DVector};
 use windfall_numerics::double_double::DoubleDouble;
 
@@ -27,8 +29,10 @@ pub struct Surface {
     pub frame: ModelFrame,
     /// Rows of the fit as their triangle.
     pub reduced: Reduced,
-    /// Model matrix in coded units.
+    /// Model matrix in coded units, the columns of blocks behind the terms.
     pub x: DMatrix<f64>,
+    /// Block of each run, where there are blocks.
+    pub blocks: Option<Categories>,
 }
 
 /// Fits a surface.
@@ -45,18 +49,45 @@ pub fn fit_surface(
     y: &[f64],
     confidence: f64,
 ) -> Result<Surface, Error> {
+    fit_surface_in_blocks(factors, terms, (coded, None), y, confidence)
+}
+
+/// [`fit_surface`] of runs that were made in blocks, each with a mean of its own: the surface is
+/// that of the mean of the blocks.
+///
+/// * `coded`: with the block of each run
+///
+/// # Source
+/// Box, G. E. P. and Hunter, J. S. (1957), Multi-factor experimental designs for exploring
+/// response surfaces, Ann. Math. Statist. 28, 195.
+pub fn fit_surface_in_blocks(
+    factors: &[FactorCoding],
+    terms: &SurfaceTerms,
+    (coded, blocks): (&[Vec<f64>], Option<&Categories>),
+    y: &[f64],
+    confidence: f64,
+) -> Result<Surface, Error> {
     let points: Vec<Vec<f64>> = (0..y.len())
         .map(|row| coded.iter().map(|factor| factor[row]).collect())
         .collect();
-    let x = rows_of(&terms.monomials, &points);
-    let frame = frame_of(factors, terms);
-    let wanted: Vec<usize> = (0..x.ncols()).collect();
+    let own = terms.monomials.len() + 1;
+    let block_columns: Vec<usize> = (own..own + blocks.map_or(0, |b| b.levels.len() - 1)).collect();
+    let x = rows_of(&terms.monomials, &points, &block_rows(blocks, y.len()));
+    let mut frame = frame_of(factors, terms);
+    let levels = blocks.iter().flat_map(|own| &own.levels);
+    let names = levels.map(|level| format!("block[{level}]"));
+    frame.names.extend(names.take(block_columns.len()));
+    // Blocks stand before the terms: a term that they hide has no estimate.
+    let wanted = std::iter::once(0).chain(block_columns.iter().copied());
+    let wanted: Vec<usize> = wanted.chain(1..own).collect();
     let reduced = reduce(&x, y);
     let fit = fit_reduced(&frame, &x, y, &reduced, &wanted, confidence)?;
+    let fit = fit.in_blocks(&reduced, &block_columns);
     let mut coefficients = vec![0.0; x.ncols()];
     for (column, coefficient) in fit.columns.iter().zip(&fit.coefficients) {
         coefficients[*column] = coefficient.estimate;
     }
+    coefficients.truncate(own);
     Ok(Surface {
         actual: actual_terms(factors, &terms.monomials, &coefficients),
         factors: factors.to_vec(),
@@ -66,17 +97,31 @@ pub fn fit_surface(
         frame,
         reduced,
         x,
+        blocks: blocks.cloned(),
     })
 }
 
-/// Model matrix of points in coded units, the intercept first.
-fn rows_of(monomials: &[Monomial], points: &[Vec<f64>]) -> DMatrix<f64> {
+/// Contrasts of the blocks against their mean, a row for each run.
+fn block_rows(blocks: Option<&Categories>, runs: usize) -> DMatrix<f64> {
+    let Some(blocks) = blocks else {
+        return DMatrix::zeros(runs, 0);
+    };
+    let contrast = Contrast::Sum.matrix(&blocks.levels, 0).matrix;
+    DMatrix::from_fn(runs, contrast.ncols(), |run, column| {
+        blocks.codes[run].map_or(0.0, |block| contrast[(block, column)])
+    })
+}
+
+/// Model matrix of points in coded units, the intercept first and what stands for blocks last.
+fn rows_of(monomials: &[Monomial], points: &[Vec<f64>], blocks: &DMatrix<f64>) -> DMatrix<f64> {
+    let own = monomials.len() + 1;
     DMatrix::from_fn(
         points.len(),
-        monomials.len() + 1,
+        own + blocks.ncols(),
         |row, column| match column {
             0 => 1.0,
-            _ => monomial_value(&monomials[column - 1], &points[row]),
+            _ if column < own => monomial_value(&monomials[column - 1], &points[row]),
+            _ => blocks[(row, column - own)],
         },
     )
 }
@@ -171,9 +216,32 @@ impl Surface {
         (0..self.factors.len()).map(slope).collect()
     }
 
-    /// Predictions at coded settings.
+    /// Predictions at coded settings, at the mean of the blocks.
     pub fn predict(&self, points: &[Vec<f64>]) -> Vec<Prediction> {
-        predict(&self.fit, &rows_of(&self.terms.monomials, points))
+        let count = self.x.ncols() - self.coded.len();
+        let mean = DMatrix::zeros(points.len(), count);
+        predict(&self.fit, &rows_of(&self.terms.monomials, points, &mean))
+    }
+
+    /// Columns that stand for blocks.
+    pub fn block_columns(&self) -> Vec<usize> {
+        (self.coded.len()..self.x.ncols()).collect()
+    }
+
+    /// How far each block lies from the mean of the blocks, by its level; none where a block
+    /// cannot be told from a term.
+    pub fn block_effects(&self) -> Vec<(String, f64)> {
+        let Some(blocks) = &self.blocks else {
+            return Vec::new();
+        };
+        let place = |column: usize| self.fit.columns.iter().position(|own| *own == column);
+        let estimate = |column| Some(self.fit.coefficients[place(column)?].estimate);
+        let found: Option<Vec<f64>> = self.block_columns().into_iter().map(estimate).collect();
+        let Some(mut effects) = found else {
+            return Vec::new();
+        };
+        effects.push(-effects.iter().sum::<f64>());
+        blocks.levels.iter().cloned().zip(effects).collect()
     }
 
     /// Highest degree of its terms.
@@ -183,9 +251,15 @@ impl Surface {
     }
 }
 
-/// Lack of fit and pure error; `None` where no run is repeated.
+/// Lack of fit and pure error; `None` where no run is repeated within its block.
 pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> Option<LackOfFit> {
-    let settings = DMatrix::from_fn(y.len(), coded.len(), |row, factor| coded[factor][row]);
+    let code = |row: usize| surface.blocks.as_ref().and_then(|own| own.codes[row]);
+    let settings = DMatrix::from_fn(y.len(), coded.len() + 1, |row, factor| {
+        match coded.get(factor) {
+            Some(coded) => coded[row],
+            None => code(row).map_or(0.0, |code| code as f64),
+        }
+    });
     lack_of_fit(
         &settings,
         y,

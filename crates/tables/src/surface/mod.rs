@@ -1,5 +1,6 @@
 //! `windfall surface`: response surfaces and their optima.
 
+mod blocks;
 mod factors;
 pub mod figure_contour;
 pub mod figure_effects;
@@ -10,6 +11,7 @@ pub mod figure_view;
 pub mod fitted;
 pub mod goal;
 pub mod outcome;
+pub mod request;
 pub mod run;
 mod settings;
 pub mod text;

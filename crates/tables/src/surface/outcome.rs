@@ -95,6 +95,25 @@ pub struct RidgeOutcome {
     pub value: f64,
 }
 
+/// Blocks of runs.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct BlockOutcome {
+    /// What they take up before the model.
+    #[serde(flatten)]
+    pub sum: SumOfSquares,
+    /// How far each lies from the mean of the blocks.
+    pub effects: Vec<BlockEffect>,
+}
+
+/// A block of runs.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct BlockEffect {
+    /// Its level.
+    pub block: String,
+    /// How far it lies from the mean of the blocks.
+    pub effect: f64,
+}
+
 /// The surface of one response.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SurfaceModel {
@@ -104,6 +123,8 @@ pub struct SurfaceModel {
     pub terms: Vec<SurfaceTerm>,
     /// The polynomial in actual units, whole.
     pub actual_terms: Vec<ActualTerm>,
+    /// What blocks take up, where runs were made in blocks; R² and the model are of what is left.
+    pub blocks: Option<BlockOutcome>,
     /// The model against none.
     pub model: WholeModel,
     /// Residuals.

@@ -1,14 +1,12 @@
 //! `windfall surface`: a table of runs → response surfaces and the best settings.
 
 use crate::design::coding::number_factors;
-#[cfg(feature = "clap")]
-use crate::option_words::{anova_type, members};
-use crate::reading::ReadingOptions;
 use crate::regress::findings::{
     aliased_findings, finding, fit_findings, lack_finding, left_out_finding,
 };
 use crate::regress::outcome::rows_of;
 use crate::regress::run::check_part;
+use crate::surface::blocks::{block_column, block_outcome, blocks_finding, blocks_of};
 use crate::surface::factors::{coded_factors, coding_findings, coding_text};
 use crate::surface::figure_contour::contour_paintings;
 use crate::surface::figure_effects::effects_painting;
@@ -22,124 +20,25 @@ use crate::surface::outcome::{
     ActualTerm, CanonicalOutcome, FactorOutcome, RidgeOutcome, SurfaceModel, SurfaceOutcome,
     SurfaceTerm,
 };
+use crate::surface::request::SurfaceRequest;
 use crate::surface::settings::{SettingsRequest, grid_of, settings};
-use std::path::PathBuf;
 use windfall_draw::files::{FigureFolder, NamedFigure, write_figures, write_paintings};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_files::write_file::check_outputs;
-use windfall_statistics::model::anova::{Anova, anova};
+use windfall_statistics::model::anova::{Anova, anova_within};
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
 use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
 use windfall_statistics::residuals::diagnostics::{inflation, influence};
 use windfall_statistics::surface::analysis::{
-    Shape, Surface, canonical, fit_surface, ridge, surface_lack_of_fit,
+    Shape, Surface, canonical, fit_surface_in_blocks, ridge, surface_lack_of_fit,
 };
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::desirability::Goal;
 use windfall_statistics::surface::terms::{is_hierarchical, letter, monomial_name, surface_terms};
-
-pub use windfall_statistics::model::anova::AnovaType;
-
-/// What `windfall surface` is asked.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "clap", derive(clap::Args))]
-pub struct SurfaceRequest {
-    /// Table of runs with a header line (CSV)
-    #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
-    pub table: PathBuf,
-    /// A response: a column, or a function of columns; may be repeated, each with its --model
-    #[cfg_attr(
-        feature = "clap",
-        arg(long = "response", value_name = "COLUMN", required = true)
-    )]
-    pub responses: Vec<String>,
-    /// Its model; one for all responses, or one for each in their order
-    #[cfg_attr(
-        feature = "clap",
-        arg(long = "model", value_name = "MODEL", default_value = "quadratic")
-    )]
-    pub models: Vec<String>,
-    /// A factor; repeated in the order of the letters A, B, C …
-    #[cfg_attr(feature = "clap", arg(long = "factor", value_name = "COLUMN"))]
-    pub factors: Vec<String>,
-    /// Actual values of coded -1 and 1 of a factor: k=0.44..0.86; may be repeated
-    #[cfg_attr(feature = "clap", arg(long = "range", value_name = "FACTOR=LOW..HIGH"))]
-    pub ranges: Vec<String>,
-    /// Type of the analysis of variance, in coded units
-    #[cfg_attr(feature = "clap", arg(long, default_value = "3", value_name = "TYPE", value_parser = anova_type()))]
-    pub anova: AnovaType,
-    /// Level of the intervals
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, default_value_t = 0.95, value_name = "LEVEL")
-    )]
-    pub confidence: f64,
-    /// What is wanted of a response; may be repeated
-    #[cfg_attr(feature = "clap", arg(long = "goal", value_name = "GOAL"))]
-    pub goals: Vec<String>,
-    /// Hold a factor at a value: k=0.868; may be repeated
-    #[cfg_attr(feature = "clap", arg(long = "hold", value_name = "FACTOR=VALUE"))]
-    pub hold: Vec<String>,
-    /// Factor at whose values settings as good as the best are listed
-    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
-    pub along: Option<String>,
-    /// How many of these values
-    #[cfg_attr(feature = "clap", arg(long, default_value_t = 15, value_name = "N", value_parser = members()))]
-    pub members: usize,
-    /// Two factors for a grid of predictions: k,e (in --format json and csv)
-    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR,FACTOR"))]
-    pub grid: Option<String>,
-    /// Points of the grid along each factor
-    #[cfg_attr(feature = "clap", arg(long, default_value_t = 41, value_name = "N"))]
-    pub grid_points: usize,
-    /// Contours, surfaces, effects, perturbation, desirability, and model against runs
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub figures: Option<FigureFolder>,
-    /// How the table is read
-    #[cfg_attr(feature = "clap", command(flatten))]
-    pub reading: ReadingOptions,
-}
-
-impl SurfaceRequest {
-    /// What is usual beside table, responses and their models.
-    pub fn usual(table: PathBuf, responses: Vec<String>, models: Vec<String>) -> Self {
-        Self {
-            table,
-            responses,
-            models,
-            factors: Vec::new(),
-            ranges: Vec::new(),
-            anova: AnovaType::Partial,
-            confidence: 0.95,
-            goals: Vec::new(),
-            hold: Vec::new(),
-            along: None,
-            members: 15,
-            grid: None,
-            grid_points: 41,
-            figures: None,
-            reading: ReadingOptions::default(),
-        }
-    }
-
-    /// Responses with the model of each.
-    fn modelled(&self) -> Result<Vec<(&String, &String)>, Error> {
-        let (responses, models) = (&self.responses, &self.models);
-        if models.len() != 1 && models.len() != responses.len() {
-            let problem = format!(
-                "there are {} responses and {} models: give one model for all, or one for each",
-                responses.len(),
-                models.len()
-            );
-            return Err(unusable("--model", problem));
-        }
-        Ok(responses.iter().zip(models.iter().cycle()).collect())
-    }
-}
 
 /// Fits response surfaces, and draws them where figures are asked for.
 ///
@@ -166,7 +65,13 @@ pub fn fitted_surfaces(
     check_part("--confidence", request.confidence)?;
     let mut data = request.reading.read(&request.table)?;
     let factors = factor_names(request, &data)?;
-    let mut findings = keep_complete(request, &factors, &mut data)?;
+    let block = block_column(request, &factors, &data)?;
+    let mut findings = keep_complete(request, (&factors, block.as_ref()), &mut data)?;
+    let blocks = block
+        .as_ref()
+        .map(|name| blocks_of(name, &data))
+        .transpose()?;
+    findings.extend(block.as_ref().zip(blocks.as_ref()).map(blocks_finding));
     let coded = coded_factors(&data, &factors, &request.ranges)?;
     findings.extend(data.left_out_finding());
     findings.extend(coding_findings(&coded));
@@ -176,10 +81,10 @@ pub fn fitted_surfaces(
     for (response, model) in modelled {
         let y = response_values(response, &data)?;
         let terms = surface_terms(model, &factors).map_err(Error::Statistics)?;
-        let fitted = fit_surface(
+        let fitted = fit_surface_in_blocks(
             &coded.factors,
             &terms,
-            &coded.values,
+            (&coded.values, blocks.as_ref()),
             &y,
             request.confidence,
         )
@@ -280,10 +185,11 @@ fn factor_names(request: &SurfaceRequest, data: &Data) -> Result<Vec<String>, Er
 /// Leaves out runs with missing cells, and says so.
 fn keep_complete(
     request: &SurfaceRequest,
-    factors: &[String],
+    (factors, block): (&[String], Option<&String>),
     data: &mut Data,
 ) -> Result<Vec<FindingOutcome>, Error> {
     let mut names = factors.to_vec();
+    names.extend(block.cloned());
     for response in &request.responses {
         if has_column(data, response) {
             names.push(response.clone());
@@ -367,7 +273,8 @@ fn model_of(
 ) -> (SurfaceModel, Vec<FindingOutcome>) {
     let fit = &surface.fit;
     let every: Vec<usize> = (0..surface.terms.monomials.len()).collect();
-    let variance = anova(&surface.frame, &surface.reduced, &every, request.anova);
+    let whole = (&surface.frame, &surface.reduced);
+    let variance = anova_within(whole, &surface.block_columns(), &every, request.anova);
     let influence = influence(fit, y);
     let vif = inflation(&surface.frame, fit);
     let mean = y.iter().sum::<f64>() / y.len() as f64;
@@ -399,6 +306,7 @@ fn model_of(
                 coefficient: *coefficient,
             })
             .collect(),
+        blocks: block_outcome(surface),
         model: fit.whole(),
         residual: fit.residual(),
         total: fit.total(),

@@ -68,13 +68,22 @@ fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
             p: term.p?,
         })
     });
-    let rows: Vec<AnovaRow> = std::iter::once(model.model.row()).chain(own).collect();
+    let blocks = model.blocks.iter().map(|own| AnovaRow {
+        term: "blocks".to_owned(),
+        ss: own.sum.ss,
+        df: own.sum.df,
+        f: f64::NAN,
+        p: f64::NAN,
+    });
+    let model_row = std::iter::once(model.model.row());
+    let rows: Vec<AnovaRow> = blocks.chain(model_row).chain(own).collect();
     let lack_of_fit = model.lack_of_fit.as_ref();
     format!(
-        "\n{}\n{}\n\nAnalysis of variance, type {}, in coded units:\n{}\n\n{}\n\
+        "\n{}\n{}\n{}\nAnalysis of variance, type {}, in coded units:\n{}\n\n{}\n\
          residual standard deviation {} ({} % of the mean), adequate precision {}\n{}{}",
         model.response,
         text_of_rows(&model.terms, &TERMS, &[0, 1]),
+        blocks_text(model),
         model.anova_type,
         anova_text(&rows, model.residual, lack_of_fit, model.total),
         r2_text(quality),
@@ -84,6 +93,17 @@ fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
         lack_of_fit_text(lack_of_fit, "no run is repeated"),
         canonical_text(outcome, model)
     )
+}
+
+/// Blocks and how far they lie from their mean.
+fn blocks_text(model: &SurfaceModel) -> String {
+    let effects = model.blocks.iter().flat_map(|own| &own.effects);
+    let effects = effects.map(|own| format!("{} {}", own.block, number(own.effect)));
+    let effects: Vec<String> = effects.collect();
+    match effects.is_empty() {
+        true => String::new(),
+        false => format!("blocks, from their mean: {}\n", effects.join(", ")),
+    }
 }
 
 fn canonical_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {

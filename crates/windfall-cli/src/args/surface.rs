@@ -2,7 +2,7 @@
 
 use crate::args::format::Format;
 use clap::Args;
-use windfall_tables::surface::run::SurfaceRequest;
+use windfall_tables::surface::request::SurfaceRequest;
 
 /// `windfall surface`
 #[derive(Debug, Args)]

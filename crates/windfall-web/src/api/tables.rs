@@ -17,7 +17,8 @@ use windfall_files::text::quote::{command, path_word};
 use windfall_tables::regress::request::{Direction, RegressRequest};
 use windfall_tables::regress::run::{AnyRegressOutcome, regress};
 use windfall_tables::surface::outcome::SurfaceOutcome;
-use windfall_tables::surface::run::{SurfaceRequest, surface};
+use windfall_tables::surface::request::SurfaceRequest;
+use windfall_tables::surface::run::surface;
 use windfall_workspace::campaign_view::name_of;
 
 /// Largest number of grid points along one factor.

@@ -11,6 +11,8 @@ export type AnyRegressOutcome = RegressOutcome | MixedOutcome;
 export interface BenchOutcome {
   value: number; sd: number; unit: string; told: number | null; impacts: number;
 }
+export interface BlockEffect { block: string; effect: number; }
+export type BlockOutcome = SumOfSquares & { effects: BlockEffect[]; };
 export interface Bounds { low: [number, number, number]; high: [number, number, number]; }
 export interface BoxCoxOutcome { lambda: number; low: number | null; high: number | null; }
 export interface BruiseOutcome { limits: LimitOutcome[]; mean_largest: number; places: PlaceOutcome[]; }
@@ -373,9 +375,10 @@ export interface SurfaceGiven {
   along?: string | null; members?: number; grid?: string | null; grid_points?: number;
 }
 export type SurfaceModel = QualityOutcome & ({
-  response: string; terms: SurfaceTerm[]; actual_terms: ActualTerm[]; model: WholeModel; residual: SumOfSquares;
-  total: SumOfSquares; cv_percent: number; anova_type: string; lack_of_fit: LackOfFitOutcome | null;
-  canonical: CanonicalOutcome | null; ridge: RidgeOutcome[]; influence: RowOutcome[];
+  response: string; terms: SurfaceTerm[]; actual_terms: ActualTerm[]; blocks: BlockOutcome | null; model: WholeModel;
+  residual: SumOfSquares; total: SumOfSquares; cv_percent: number; anova_type: string;
+  lack_of_fit: LackOfFitOutcome | null; canonical: CanonicalOutcome | null; ridge: RidgeOutcome[];
+  influence: RowOutcome[];
 });
 export type SurfaceOutcome = SurfaceModel & ({
   factors: FactorOutcome[]; coding: string; responses: SurfaceModel[]; optimum: SettingOutcome | null;
