@@ -24,3 +24,14 @@ pub struct Coefficient {
     /// Degrees of freedom of t.
     pub df: f64,
 }
+
+/// An estimate with its standard error and degrees of freedom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimated {
+    /// Its value.
+    pub value: f64,
+    /// Its standard error.
+    pub se: f64,
+    /// Degrees of freedom.
+    pub df: f64,
+}

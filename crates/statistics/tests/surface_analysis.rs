@@ -10,7 +10,7 @@ use windfall_statistics::model::linear_model::fit_linear;
 use windfall_statistics::model::model_frame::{ModelRows, model_rows};
 use windfall_statistics::model::reduced::reduce;
 use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions, select};
-use windfall_statistics::residuals::cross_validation::cross_validate;
+use windfall_statistics::residuals::cross_validation::{Parts, cross_validate};
 use windfall_statistics::surface::analysis::{Shape, Surface, canonical, fit_surface, ridge};
 use windfall_statistics::surface::coding::FactorCoding;
 use windfall_statistics::surface::desirability::{Goal, Wanted, desirability, overall};
@@ -184,7 +184,14 @@ fn closed_form_leaving_out_one_by_one() {
     let wanted: Vec<usize> = (0..rows.x.ncols()).collect();
     let fit = fit_linear(&rows.frame, &rows.x, &rows.y, &wanted, 0.95).unwrap();
     let press = fit.quality(&rows.y).press;
-    let found = cross_validate(&rows.frame, &rows.x, &rows.y, &terms, None, 40, 3).unwrap();
+    let found = {
+        let parts = Parts {
+            folds: 40,
+            seed: 3,
+            units: None,
+        };
+        cross_validate(&rows.frame, &rows.x, &rows.y, &terms, None, parts).unwrap()
+    };
     assert!((found.rms.powi(2) * 40.0 / press - 1.0).abs() < 1e-10);
 }
 

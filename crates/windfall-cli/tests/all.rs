@@ -25,6 +25,7 @@ mod joint;
 mod kinds;
 mod known;
 mod library;
+mod means;
 mod messages;
 mod outputs;
 mod page_quantities;

@@ -192,6 +192,42 @@ fn closed_form_a_single_value_does_not_stop_the_other_groups() {
     }
 }
 
+/// Each fruit predicted from the others, against a loop over `lm` in R 4.2.
+#[test]
+fn reference_cross_validation_by_fruit() {
+    let table = "fruit,v,k\na,0.1,870\na,0.3,805\na,0.5,760\nb,0.1,910\nb,0.3,841\nb,0.5,803\n\
+                 c,0.1,955\nc,0.3,902\nc,0.5,850\nd,0.1,840\nd,0.3,781\nd,0.5,722\n";
+    let plain = "regress~t.csv~--response~k~--terms~v";
+    let found = json(table, &format!("{plain}~--fold-by~fruit"));
+    let validation = &found["cross_validation"];
+    assert_eq!(
+        (&validation["folds"], &found["fold_by"]),
+        (&4.into(), &"fruit".into())
+    );
+    for (name, expected) in [("rms", 60.7723184629155), ("r2", 0.352825215036085)] {
+        let own = validation[name].as_f64().unwrap();
+        assert!((own / expected - 1.0).abs() < 1e-12, "{name}: {own}");
+    }
+    assert_eq!(json(table, plain)["cross_validation"]["folds"], 10);
+    let (_, text, _) = run(table, &format!("{plain}~--fold-by~fruit"));
+    assert!(
+        text.contains("in 4 parts that keep each fruit together"),
+        "{text}"
+    );
+    for (arguments, said) in [
+        ("--fold-by~tree", "there is no column \"tree\""),
+        ("--fold-by~fruit~--random~fruit", "cannot be used with"),
+    ] {
+        let (status, _, told) = run(table, &format!("{plain}~{arguments}"));
+        assert_eq!(status, Some(2), "{told}");
+        assert!(told.contains(said), "{told}");
+    }
+    let one = table.replace(['b', 'c', 'd'], "a");
+    let (status, _, told) = run(&one, &format!("{plain}~--fold-by~fruit"));
+    assert_eq!(status, Some(2));
+    assert!(told.contains("there is no other to predict"), "{told}");
+}
+
 /// Sets of analysis of variance whose values share up to 13 leading digits.
 const ANOVA: [&str; 11] = [
     "SiRstv", "SmLs01", "SmLs02", "SmLs03", "AtmWtAg", "SmLs04", "SmLs05", "SmLs06", "SmLs07",

@@ -1,6 +1,6 @@
 //! Tests of fixed effects with Satterthwaite's degrees of freedom.
 
-use crate::coefficient::Coefficient;
+use crate::coefficient::{Coefficient, Estimated};
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::mixed::boundary::Criterion;
 use crate::mixed::error::MixedError;
@@ -183,6 +183,16 @@ fn contrast_df(
         uncertainty.slopes.iter().map(quadratic),
     );
     degrees_of_freedom(uncertainty, quadratic(covariance), &slope)
+}
+
+/// A sum of coefficients with Satterthwaite's degrees of freedom.
+pub fn estimate(fit: &MixedFit, uncertainty: &VarianceUncertainty, weights: &[f64]) -> Estimated {
+    let weights = DVector::from_column_slice(weights);
+    Estimated {
+        value: weights.dot(&DVector::from_column_slice(&fit.coefficients)),
+        se: (weights.transpose() * &fit.covariance * &weights)[(0, 0)].sqrt(),
+        df: contrast_df(uncertainty, &fit.covariance, &weights),
+    }
 }
 
 /// Tests of every coefficient, with intervals of this confidence (as 0.95).

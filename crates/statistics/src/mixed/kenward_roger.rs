@@ -12,7 +12,7 @@
 //! X'V⁻³X = X'V⁻²X - (Z'V⁻²X)'D B
 //! ```
 
-use crate::coefficient::Coefficient;
+use crate::coefficient::{Coefficient, Estimated};
 use crate::distribution::tail::f_upper;
 use crate::mixed::error::MixedError;
 use crate::mixed::fit::{MixedFit, MixedMethod};
@@ -331,6 +331,21 @@ pub fn kenward_roger_tests(
         test_of(fit, &adjusted.covariance, name, &weights, df, confidence)
     });
     tests.collect()
+}
+
+/// A sum of coefficients with Kenward and Roger's standard error and degrees of freedom.
+pub fn kenward_roger_estimate(
+    fit: &MixedFit,
+    adjusted: &KenwardRoger,
+    weights: &[f64],
+) -> Estimated {
+    let row = DMatrix::from_row_slice(1, weights.len(), weights);
+    let value = (&row * DVector::from_column_slice(&fit.coefficients))[(0, 0)];
+    Estimated {
+        value,
+        se: (&row * &adjusted.covariance * row.transpose())[(0, 0)].sqrt(),
+        df: denominator(fit, adjusted, &row, 1).0,
+    }
 }
 
 /// F test that all rows of `contrast` times the coefficients are zero. `f` is scaled,

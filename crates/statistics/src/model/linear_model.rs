@@ -1,7 +1,7 @@
 //! Linear models: estimates with their errors, and how good they are.
 
 use crate::as_written::as_written;
-use crate::coefficient::Coefficient;
+use crate::coefficient::{Coefficient, Estimated};
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
 use crate::model::anova::{AnovaRow, SumOfSquares};
@@ -346,6 +346,25 @@ impl LinearFit {
             df,
             f,
             p: f_upper(f, df, self.residual_df as f64),
+        }
+    }
+
+    /// A sum of coefficients: `weights` of all columns of the model, also of those without an
+    /// estimate, which do not count.
+    ///
+    /// * `covariance`: of the estimates, in their order; rows
+    pub fn estimate(&self, weights: &[f64], covariance: &[Vec<f64>]) -> Estimated {
+        let own: Vec<f64> = self.columns.iter().map(|column| weights[*column]).collect();
+        let pairs = own.iter().zip(&self.coefficients);
+        let quadratic: f64 = own
+            .iter()
+            .zip(covariance)
+            .map(|(a, row)| a * row.iter().zip(&own).map(|(v, b)| v * b).sum::<f64>())
+            .sum();
+        Estimated {
+            value: pairs.map(|(weight, own)| weight * own.estimate).sum(),
+            se: quadratic.sqrt(),
+            df: self.residual_df as f64,
         }
     }
 

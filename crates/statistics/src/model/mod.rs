@@ -7,6 +7,7 @@ pub mod expression;
 pub mod formula;
 pub mod formula_syntax;
 pub mod linear_model;
+pub mod marginal_means;
 pub mod model_frame;
 pub mod random_terms;
 pub mod reduced;

@@ -19,6 +19,18 @@ pub struct CrossValidation {
     pub r2: f64,
 }
 
+/// How rows are divided into parts.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts<'a> {
+    /// Number of parts.
+    pub folds: usize,
+    /// Seed of the division.
+    pub seed: u64,
+    /// Unit (fruit) of each row, from 0 without gaps: rows of one unit stay together. Each row
+    /// is one by itself if left out.
+    pub units: Option<&'a [usize]>,
+}
+
 /// Divides the rows into parts by chance and predicts each part from the others.
 ///
 /// * `terms`: terms of the model, all that may be selected from
@@ -32,16 +44,20 @@ pub fn cross_validate(
     y: &[f64],
     terms: &[usize],
     selection: Option<&SelectionOptions>,
-    folds: usize,
-    seed: u64,
+    parts: Parts,
 ) -> Option<CrossValidation> {
     let rows = y.len();
-    let folds = folds.clamp(2, rows.max(2));
-    let mut order: Vec<usize> = (0..rows).collect();
-    shuffle(&mut order, seed);
+    let units = match parts.units {
+        Some(units) => rows_of_units(units),
+        None => (0..rows).map(|row| vec![row]).collect(),
+    };
+    let folds = parts.folds.clamp(2, units.len().max(2));
+    let mut order: Vec<usize> = (0..units.len()).collect();
+    shuffle(&mut order, parts.seed);
     let (mut error, mut total) = (0.0, 0.0);
     for fold in 0..folds {
-        let left_out: Vec<usize> = order.iter().copied().skip(fold).step_by(folds).collect();
+        let left_out = order.iter().skip(fold).step_by(folds);
+        let left_out: Vec<usize> = left_out.flat_map(|unit| units[*unit].clone()).collect();
         let mut inside = vec![true; rows];
         left_out.iter().for_each(|row| inside[*row] = false);
         let kept: Vec<usize> = (0..rows).filter(|row| inside[*row]).collect();
@@ -72,6 +88,15 @@ pub fn cross_validate(
         rms: (error / rows as f64).sqrt(),
         r2: 1.0 - error / total,
     })
+}
+
+fn rows_of_units(units: &[usize]) -> Vec<Vec<usize>> {
+    let count = units.iter().max().map_or(0, |last| last + 1);
+    let mut rows = vec![Vec::new(); count];
+    for (row, unit) in units.iter().enumerate() {
+        rows[*unit].push(row);
+    }
+    rows
 }
 
 /// Fisher and Yates' shuffle.

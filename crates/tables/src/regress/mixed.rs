@@ -3,6 +3,7 @@
 use crate::regress::findings::{
     aliased_findings, code_findings, finding, left_out_finding, row_count,
 };
+use crate::regress::means::{MeansOutcome, Model, means_of};
 use crate::regress::outcome::{RangeOutcome, ranges_of};
 use crate::regress::request::{FreedomMethod, RegressRequest};
 use crate::rows::RowCount;
@@ -15,10 +16,11 @@ use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
 use windfall_statistics::mixed::inference::{
-    FTest, VarianceUncertainty, coefficient_tests, f_test, picking_contrast, variance_uncertainty,
+    FTest, VarianceUncertainty, coefficient_tests, estimate, f_test, picking_contrast,
+    variance_uncertainty,
 };
 use windfall_statistics::mixed::kenward_roger::{
-    KenwardRoger, kenward_roger, kenward_roger_f, kenward_roger_tests,
+    KenwardRoger, kenward_roger, kenward_roger_estimate, kenward_roger_f, kenward_roger_tests,
 };
 use windfall_statistics::mixed::predict::{MixedPrediction, NewRows, predict_mixed};
 use windfall_statistics::mixed::profile::profile_variances;
@@ -127,6 +129,8 @@ pub struct MixedOutcome {
     pub effects: Vec<EffectOutcome>,
     /// Predictions.
     pub predictions: Vec<MixedPredictionOutcome>,
+    /// Marginal means.
+    pub means: Vec<MeansOutcome>,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
 }
@@ -240,8 +244,36 @@ pub fn regress_mixed(
         removed: Vec::new(),
         effects: effects(&fitted),
         predictions: predictions(request, &fitted, &uncertainty)?,
+        means: means(
+            request,
+            data,
+            &kept,
+            (&fitted, &uncertainty, adjusted.as_ref()),
+        )?,
         findings,
     })
+}
+
+fn means(
+    request: &RegressRequest,
+    data: &Data,
+    kept: &[usize],
+    (fitted, uncertainty, adjusted): (&Fitted, &VarianceUncertainty, Option<&KenwardRoger>),
+) -> Result<Vec<MeansOutcome>, Error> {
+    let model = Model {
+        frame: &fitted.rows.frame,
+        aliased: &fitted.aliased,
+        table: &data.table,
+        kept,
+        estimate: &|weights| {
+            let own: Vec<f64> = fitted.columns.iter().map(|own| weights[*own]).collect();
+            Ok(match adjusted {
+                None => estimate(&fitted.fit, uncertainty, &own),
+                Some(adjusted) => kenward_roger_estimate(&fitted.fit, adjusted, &own),
+            })
+        },
+    };
+    means_of(&model, &request.means, request.adjust, request.confidence)
 }
 
 fn mixed(error: windfall_statistics::mixed::error::MixedError) -> Error {

@@ -1,5 +1,6 @@
 //! A mixed model as text and CSV.
 
+use crate::regress::means::means_text;
 use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
 use crate::regress::text::csv_of_terms;
 use crate::rows::rows_text;
@@ -96,6 +97,7 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         number(outcome.bic),
         number(outcome.log_likelihood),
     );
+    text += &means_text(&outcome.means);
     if !outcome.predictions.is_empty() {
         let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
         text += &format!("\n{table}\n");

@@ -1,6 +1,7 @@
 //! `windfall regress`: linear and mixed models.
 
 pub mod findings;
+pub mod means;
 pub mod mixed;
 pub mod mixed_text;
 pub mod outcome;

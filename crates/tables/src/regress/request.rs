@@ -3,6 +3,7 @@
 #[cfg(feature = "clap")]
 use crate::option_words::{anova_type, contrast, direction, likelihood};
 use crate::reading::ReadingOptions;
+use crate::regress::means::Adjust;
 use std::path::PathBuf;
 
 pub use windfall_statistics::mixed::fit::MixedMethod;
@@ -76,6 +77,17 @@ pub struct RegressRequest {
     /// Contrasts of categories
     #[cfg_attr(feature = "clap", arg(long, default_value = "treatment", value_parser = contrast()))]
     pub contrasts: Contrast,
+    /// Marginal means of a category, or of several ('variety,dose'), with the differences of all
+    /// pairs: over the levels of the other categories in equal parts, at the mean of each column
+    /// of numbers; may be repeated
+    #[cfg_attr(feature = "clap", arg(long = "means", value_name = "COLUMNS"))]
+    pub means: Vec<String>,
+    /// How differences of means allow for their number
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_enum, default_value_t, requires = "means")
+    )]
+    pub adjust: Adjust,
     /// Standard errors that hold for unequal variances (HC3)
     #[cfg_attr(feature = "clap", arg(long))]
     pub robust: bool,
@@ -85,6 +97,13 @@ pub struct RegressRequest {
         arg(long, default_value_t = 10, value_name = "PARTS")
     )]
     pub folds: usize,
+    /// Column of fruit (or lots, days) whose rows stay together in cross-validation: how well
+    /// another fruit is predicted
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "COLUMN", conflicts_with = "random")
+    )]
+    pub fold_by: Option<String>,
     /// Seed of the division into parts
     #[cfg_attr(feature = "clap", arg(long, default_value_t = 1))]
     pub seed: u64,
@@ -120,8 +139,11 @@ impl RegressRequest {
             hierarchy: false,
             anova: AnovaType::Hierarchical,
             contrasts: Contrast::Treatment,
+            means: Vec::new(),
+            adjust: Adjust::Tukey,
             robust: false,
             folds: 10,
+            fold_by: None,
             seed: 1,
             confidence: 0.95,
             predict: None,

@@ -4,6 +4,7 @@ use crate::regress::findings::{
     aliased_findings, code_findings, finding, fit_findings, lack_finding, left_out_finding,
     row_count,
 };
+use crate::regress::means::{MeansOutcome, Model, means_of};
 use crate::regress::mixed::{MixedOutcome, regress_mixed};
 use crate::regress::outcome::{
     PredictionOutcome, RangeOutcome, RowOutcome, StepOutcome, ranges_of, rows_of,
@@ -26,7 +27,7 @@ use windfall_statistics::model::linear_model::{
 use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::model::reduced::{Reduced, reduce};
 use windfall_statistics::model::selection::{Selection, select};
-use windfall_statistics::residuals::cross_validation::{CrossValidation, cross_validate};
+use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, cross_validate};
 use windfall_statistics::residuals::diagnostics::{
     Inflation, inflation, influence, robust_coefficients, robust_covariance_rows,
 };
@@ -72,12 +73,16 @@ pub struct RegressOutcome {
     pub steps: Vec<StepOutcome>,
     /// How the model predicts rows it was not fitted to.
     pub cross_validation: Option<CrossValidation>,
+    /// Column of units whose rows stay together there.
+    pub fold_by: Option<String>,
     /// Tests of the residuals.
     pub residuals: ResidualOutcome,
     /// Rows with their influence.
     pub influence: Vec<RowOutcome>,
     /// Predictions.
     pub predictions: Vec<PredictionOutcome>,
+    /// Marginal means.
+    pub means: Vec<MeansOutcome>,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
 }
@@ -130,7 +135,8 @@ fn regress_linear(
     data: &Data,
     formula: &Formula,
 ) -> Result<RegressOutcome, Error> {
-    let rows = model_rows(formula, &data.table, request.contrasts, &[])
+    let also: Vec<String> = request.fold_by.iter().cloned().collect();
+    let rows = model_rows(formula, &data.table, request.contrasts, &also)
         .map_err(|error| data.told(error))?;
     let reduced = reduce(&rows.x, &rows.y);
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
@@ -206,16 +212,21 @@ fn outcome(
         true => robust_coefficients(fit, &rows.x),
         false => fit.coefficients.clone(),
     };
+    let units = units_of(request, data, rows)?;
     let validation = (request.folds > 0)
         .then(|| {
+            let parts = Parts {
+                folds: request.folds,
+                seed: request.seed,
+                units: units.as_deref(),
+            };
             cross_validate(
                 &rows.frame,
                 &rows.x,
                 &rows.y,
                 &selection.terms,
                 request.selection().as_ref(),
-                request.folds,
-                request.seed,
+                parts,
             )
         })
         .flatten();
@@ -262,11 +273,36 @@ fn outcome(
             .collect(),
         steps,
         cross_validation: validation,
+        fold_by: request.fold_by.clone(),
         residuals,
         influence: rows_of(influence, &lines),
         predictions: predictions(request, rows, fit)?,
+        means: means(request, data, rows, fit)?,
         findings,
     })
+}
+
+/// Unit of each row for cross-validation, from 0 without gaps.
+fn units_of(
+    request: &RegressRequest,
+    data: &Data,
+    rows: &ModelRows,
+) -> Result<Option<Vec<usize>>, Error> {
+    let Some(name) = &request.fold_by else {
+        return Ok(None);
+    };
+    let column = data.table.column(name).map_err(|error| data.told(error))?;
+    let codes = column.cells.categories().codes;
+    let codes: Vec<usize> = rows.kept.iter().filter_map(|row| codes[*row]).collect();
+    let mut known = codes.clone();
+    known.sort_unstable();
+    known.dedup();
+    if known.len() < 2 {
+        let problem = format!("all rows are of one {name}: there is no other to predict");
+        return Err(unusable("--fold-by", problem));
+    }
+    let place = |code: &usize| known.binary_search(code).unwrap_or_default();
+    Ok(Some(codes.iter().map(place).collect()))
 }
 
 /// Partial tests of categories mean something only with contrasts that sum to zero.
@@ -280,7 +316,8 @@ fn variance_of(
 ) -> Result<Vec<AnovaRow>, Error> {
     let (terms, kind) = (&selection.terms, request.anova);
     if kind == AnovaType::Partial && rows.frame.has_categories() {
-        let summed = model_rows(formula, &data.table, Contrast::Sum, &[]);
+        let also: Vec<String> = request.fold_by.iter().cloned().collect();
+        let summed = model_rows(formula, &data.table, Contrast::Sum, &also);
         let summed = summed.map_err(|error| data.told(error))?;
         let reduced = reduce(&summed.x, &summed.y);
         return Ok(anova(&summed.frame, &reduced, terms, kind).rows);
@@ -309,6 +346,34 @@ fn formula_of(formula: &Formula, rows: &ModelRows, selection: &Selection) -> Str
         .map(|t| rows.frame.terms[*t].name.clone());
     let terms: Vec<String> = std::iter::once(intercept.to_owned()).chain(terms).collect();
     format!("{response} ~ {}", terms.join(" + "))
+}
+
+fn means(
+    request: &RegressRequest,
+    data: &Data,
+    rows: &ModelRows,
+    fit: &LinearFit,
+) -> Result<Vec<MeansOutcome>, Error> {
+    if request.means.is_empty() {
+        return Ok(Vec::new());
+    }
+    if request.select.is_some() {
+        let problem = "means of a model whose terms were selected leave out what the selection \
+                       costs: fit the chosen terms without --select";
+        return Err(unusable("--means", problem));
+    }
+    let covariance = match request.robust {
+        true => robust_covariance_rows(fit, &rows.x),
+        false => fit.covariance_rows(),
+    };
+    let model = Model {
+        frame: &rows.frame,
+        aliased: &fit.aliased,
+        table: &data.table,
+        kept: &rows.kept,
+        estimate: &|weights| Ok(fit.estimate(weights, &covariance)),
+    };
+    means_of(&model, &request.means, request.adjust, request.confidence)
 }
 
 fn predictions(

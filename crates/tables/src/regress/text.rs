@@ -1,5 +1,6 @@
 //! A linear model as text and CSV.
 
+use crate::regress::means::means_text;
 use crate::regress::outcome::{PredictionOutcome, StepOutcome};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
@@ -144,8 +145,12 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     );
     if let Some(validation) = &outcome.cross_validation {
         text += &format!(
-            "cross-validation in {} parts: R² {}, error of prediction {}\n",
+            "cross-validation in {} parts{}: R² {}, error of prediction {}\n",
             validation.folds,
+            match &outcome.fold_by {
+                Some(name) => format!(" that keep each {name} together"),
+                None => String::new(),
+            },
             number(validation.r2),
             number(validation.rms)
         );
@@ -166,6 +171,7 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
         text += &(paragraph(&line, 2) + "\n");
     }
     text += &residuals_text(&outcome.residuals);
+    text += &means_text(&outcome.means);
     if !outcome.predictions.is_empty() {
         let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
         text += &format!("\n{table}\n");

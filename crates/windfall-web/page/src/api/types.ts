@@ -96,6 +96,9 @@ export interface DesignWayOutcome {
   surfaces: DesignSurfaceOutcome[]; optimum: DesignOptimum; family: DesignMember[]; heights: DesignHeight[];
   depth: DepthOutcome | null;
 }
+export interface DifferenceOutcome {
+  pair: string; difference: number; se: number; df: number; t: number; p: number; low: number; high: number;
+}
 export interface DirectionOutcome { parts: Record<string, number>; sd: number | null; words: string; }
 export interface DropOutcome {
   id: string; specimen: string; mass: MeasuredValue; height: MeasuredValue; features: Record<string, MeasuredValue>;
@@ -213,6 +216,12 @@ export interface LiveOutcome {
   measured: Record<string, ShownSamples>; laws: LiveLaw[]; findings: FindingOutcome[]; command: string; seconds: number;
 }
 export interface MassOutcome { value: number; sd: number; impacts: number; }
+export interface MeanOutcome {
+  levels: string[]; mean: number; se: number; df: number; low: number; high: number;
+}
+export interface MeansOutcome {
+  of: string[]; at: [string, number][]; means: MeanOutcome[]; adjusted: string; differences: DifferenceOutcome[];
+}
 export interface MeasuredGroup {
   group: string | null; law: string; recordings: number; values: Record<string, SpreadOutcome>;
 }
@@ -233,7 +242,7 @@ export type MixedOutcome = RowCount & ({
   terms: TermOutcome[]; covariance: number[][]; ranges: ModelRange[]; anova: MixedTest[]; variances: VarianceOutcome[];
   r2: number; r2_adjusted: number | null; r2_conditional: number; intraclass: number[]; log_likelihood: number;
   criterion: number; aic: number; aicc: number; bic: number; removed: string[]; effects: EffectOutcome[];
-  predictions: MixedPredictionOutcome[]; findings: FindingOutcome[];
+  predictions: MixedPredictionOutcome[]; means: MeansOutcome[]; findings: FindingOutcome[];
 });
 export interface MixedPrediction {
   population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
@@ -317,8 +326,9 @@ export type RegressOutcome = RowCount & QualityOutcome & ({
   formula: string; response: string; terms: TermOutcome[]; robust: boolean; covariance: number[][];
   ranges: ModelRange[]; model: WholeModel; residual: SumOfSquares; total: SumOfSquares; anova_type: string;
   anova: AnovaOutcome[]; lack_of_fit: LackOfFitOutcome | null; vif: InflationOutcome[]; removed: StepOutcome[];
-  steps: StepOutcome[]; cross_validation: CrossValidationOutcome | null; residuals: ModelResiduals;
-  influence: RowOutcome[]; predictions: PredictionOutcome[]; findings: FindingOutcome[];
+  steps: StepOutcome[]; cross_validation: CrossValidationOutcome | null; fold_by: string | null;
+  residuals: ModelResiduals; influence: RowOutcome[]; predictions: PredictionOutcome[]; means: MeansOutcome[];
+  findings: FindingOutcome[];
 });
 export interface ReportFiles { page: string; files: string[]; impacts: number; failed: number; }
 export interface ResidualOutcome {
