@@ -103,6 +103,27 @@ fn reference_means_of_an_unbalanced_table() {
     assert!(text.contains("Differences (Tukey):"), "{text}");
 }
 
+#[test]
+fn closed_form_means_as_csv() {
+    let arguments = [
+        "--formula",
+        "k ~ variety",
+        "--means",
+        "variety",
+        "--format",
+        "csv",
+    ];
+    let (_, text, _) = run(FRUIT, &arguments);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "of,what,estimate,se,df,t,p,low,high");
+    assert!(lines[1].starts_with("variety,Fuji,34.2333333333"), "{text}");
+    assert!(
+        lines[4].starts_with("variety,Gala - Fuji,2.3166666666"),
+        "{text}"
+    );
+    assert_eq!(lines.len(), 7);
+}
+
 /// Whatever the coding of the categories, means are the same.
 #[test]
 fn conserves_means_under_other_contrasts() {
@@ -136,6 +157,7 @@ fn rejects_means_that_cannot_be_estimated() {
     // Fuji at a low dose is missing.
     let missing = FRUIT.replace("Fuji,low,0.1,31.2\n", "");
     for (table, arguments, said) in [
+        (FRUIT, &["--means", "variety,"][..], "separated by commas"),
         (
             FRUIT,
             &["--means", "v"][..],

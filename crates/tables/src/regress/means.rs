@@ -4,6 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
+use windfall_files::table::write::csv_text;
 use windfall_files::text::columns::{Column, text_of_rows};
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_statistics::coefficient::Estimated;
@@ -119,6 +120,10 @@ pub(crate) fn means_of(
     let (adjustment, adjusted) = adjust.adjustment();
     let of = |text: &String| {
         let by: Vec<String> = text.split(',').map(|own| own.trim().to_owned()).collect();
+        if by.iter().any(String::is_empty) {
+            let problem = "expected columns separated by commas: variety,dose";
+            return Err(unusable(format!("--means '{text}'"), problem));
+        }
         if by.iter().collect::<BTreeSet<_>>().len() < by.len() {
             return Err(unusable(
                 format!("--means {text}"),
@@ -205,6 +210,46 @@ const DIFFERENCES: [Column<DifferenceOutcome>; 8] = [
     ("from", |own| number(own.low)),
     ("to", |own| number(own.high)),
 ];
+
+/// Means and differences as CSV, a row each.
+pub(crate) fn csv_of_means(outcomes: &[MeansOutcome]) -> Result<String, Error> {
+    let header = [
+        "of", "what", "estimate", "se", "df", "t", "p", "low", "high",
+    ];
+    let header = header.map(str::to_owned);
+    let row = |of: &MeansOutcome, what: &str, numbers: [f64; 7]| {
+        let names = [of.of.join(","), what.to_owned()];
+        let cell = |own: f64| match own.is_nan() {
+            true => String::new(),
+            false => own.to_string(),
+        };
+        names
+            .into_iter()
+            .chain(numbers.map(cell))
+            .collect::<Vec<_>>()
+    };
+    let none = f64::NAN;
+    let rows = outcomes.iter().flat_map(|of| {
+        let means = of.means.iter().map(move |own| {
+            let numbers = [own.mean, own.se, own.df, none, none, own.low, own.high];
+            row(of, &own.levels.join(" "), numbers)
+        });
+        let differences = of.differences.iter().map(move |own| {
+            let numbers = [
+                own.difference,
+                own.se,
+                own.df,
+                own.t,
+                own.p,
+                own.low,
+                own.high,
+            ];
+            row(of, &own.pair, numbers)
+        });
+        means.chain(differences)
+    });
+    csv_text(&header, rows)
+}
 
 /// Means and differences as text.
 pub(crate) fn means_text(outcomes: &[MeansOutcome]) -> String {

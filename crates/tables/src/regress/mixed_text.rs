@@ -1,6 +1,6 @@
 //! A mixed model as text and CSV.
 
-use crate::regress::means::means_text;
+use crate::regress::means::{csv_of_means, means_text};
 use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
 use crate::regress::text::csv_of_terms;
 use crate::rows::rows_text;
@@ -105,10 +105,11 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
     text + &findings_list(&outcome.findings)
 }
 
-/// A mixed model as CSV: fixed effects, or predictions where they were asked for.
+/// A mixed model as CSV: fixed effects, or predictions or means where they were asked for.
 pub fn csv_of_mixed(outcome: &MixedOutcome) -> Result<String, Error> {
-    match outcome.predictions.is_empty() {
-        true => csv_of_terms(&outcome.terms),
-        false => csv_of_rows(&outcome.predictions, &PREDICTIONS_CSV),
+    match (&outcome.predictions[..], &outcome.means[..]) {
+        ([], []) => csv_of_terms(&outcome.terms),
+        ([], means) => csv_of_means(means),
+        (predictions, _) => csv_of_rows(predictions, &PREDICTIONS_CSV),
     }
 }

@@ -1,6 +1,6 @@
 //! A linear model as text and CSV.
 
-use crate::regress::means::means_text;
+use crate::regress::means::{csv_of_means, means_text};
 use crate::regress::outcome::{PredictionOutcome, StepOutcome};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
@@ -193,11 +193,12 @@ fn steps_text(steps: &[StepOutcome]) -> String {
     text_of_rows(&rows, &columns, &[1, 2])
 }
 
-/// A model as CSV: estimates, or predictions where they were asked for.
+/// A model as CSV: estimates, or predictions or means where they were asked for.
 pub fn csv_of_regress(outcome: &RegressOutcome) -> Result<String, Error> {
-    match outcome.predictions.is_empty() {
-        true => csv_of_terms(&outcome.terms),
-        false => csv_of_rows(&outcome.predictions, &PREDICTIONS_CSV),
+    match (&outcome.predictions[..], &outcome.means[..]) {
+        ([], []) => csv_of_terms(&outcome.terms),
+        ([], means) => csv_of_means(means),
+        (predictions, _) => csv_of_rows(predictions, &PREDICTIONS_CSV),
     }
 }
 
