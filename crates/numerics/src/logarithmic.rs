@@ -11,11 +11,12 @@ const PATIENCE: usize = 700;
 /// Longest step of a logarithm.
 const LONGEST_STEP: f64 = 2.0;
 
-/// [`minimise`]; where that does not converge, or not soon, again from the start in the logarithms
-/// of the parameters, each of which keeps the sign that it has there. Of both the lower end.
+/// [`minimise`]; if that is stuck or needs more than 700 evaluations, a second minimisation from
+/// the start in the logarithms of the parameters, which keep their signs. Returns the lower of the
+/// two minima.
 ///
-/// Exponents and scales that are far off leave a curved valley, or a plain on which the data no
-/// longer tell them; in logarithms the valley is nearly straight and the steps are short.
+/// From a start that is far off, exponents and scales lead along a curved valley, or onto a plateau
+/// where they have no effect. In logarithms the valley is nearly straight, and steps stay short.
 pub fn minimise_either<const P: usize>(
     problem: &mut impl LeastSquares<P>,
     start: &[f64; P],
@@ -31,14 +32,17 @@ pub fn minimise_either<const P: usize>(
     if matches!(plain.stop, Stop::Converged | Stop::BadStart) {
         return plain;
     }
-    let left = options.max_evaluations - plain.evaluations;
+    let left = options.max_evaluations.saturating_sub(plain.evaluations);
+    if left == 0 {
+        return plain;
+    }
     let mut other = in_logarithms(problem, start, bounds, &few(left));
     other.evaluations += plain.evaluations;
     let lower = other.stop != Stop::BadStart && other.equations.cost < plain.equations.cost;
     if lower || plain.stop != Stop::EvaluationLimit {
         return if lower { other } else { plain };
     }
-    // Slow and no worse: as far as there are evaluations.
+    // Slow, but lower than in logarithms: it goes on.
     let left = options.max_evaluations.saturating_sub(other.evaluations);
     let mut slow = minimise(problem, &plain.parameters, bounds, &few(left));
     slow.evaluations += other.evaluations;

@@ -101,7 +101,7 @@ impl LevelCodes {
 
     /// Categories with the levels in the order of numbers where all are numbers, else of the
     /// alphabet.
-    pub fn sorted(self) -> Categories {
+    pub fn sorted(mut self) -> Categories {
         let mut levels: Vec<String> = self.known.keys().cloned().collect();
         levels.sort_unstable();
         let numbers = levels
@@ -116,10 +116,6 @@ impl LevelCodes {
                 .map(|(_, level)| level.clone())
                 .collect();
         }
-        self.coded(levels, ordered)
-    }
-
-    fn coded(mut self, levels: Vec<String>, ordered: bool) -> Categories {
         let mut moved = vec![0; levels.len()];
         for (place, level) in levels.iter().enumerate() {
             moved[self.known[level]] = place;
@@ -141,10 +137,17 @@ impl Cells {
         match self {
             Self::Categories(categories) => categories.clone(),
             Self::Numbers(numbers) => {
-                let mut known: Vec<f64> = numbers.iter().copied().filter(|x| !x.is_nan()).collect();
+                // Zeros of both signs are one level.
+                let value = |x: &f64| x + 0.0;
+                let known = numbers.iter().filter(|x| !x.is_nan());
+                let mut known: Vec<f64> = known.map(value).collect();
                 known.sort_by(f64::total_cmp);
                 known.dedup();
-                let place = |x: &f64| known.binary_search_by(|other| other.total_cmp(x)).ok();
+                let place = |x: &f64| {
+                    known
+                        .binary_search_by(|other| other.total_cmp(&value(x)))
+                        .ok()
+                };
                 Categories {
                     codes: numbers.iter().map(place).collect(),
                     levels: known.iter().map(f64::to_string).collect(),
@@ -246,6 +249,13 @@ mod tests {
             (&["a".to_owned(), "b".to_owned()][..], false)
         );
         assert_eq!(found.codes, [Some(1), Some(0), Some(1)]);
+    }
+
+    #[test]
+    fn closed_form_levels_of_numbers() {
+        let found = Cells::Numbers(vec![1.0, 0.0, -0.0, f64::NAN]).categories();
+        assert_eq!(found.levels, ["0", "1"]);
+        assert_eq!(found.codes, [Some(1), Some(0), Some(0), None]);
     }
 
     #[test]

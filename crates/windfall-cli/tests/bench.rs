@@ -277,7 +277,7 @@ fn rejects_what_the_bench_cannot_tell() {
         ),
         (
             r#"["sensor_damping"]"#,
-            "It is estimated with sensor_frequency",
+            "expected one of inertia, mass, force.gain, force.delay, force_filter, sensor_frequency, arm_frequency. It is estimated with sensor_frequency",
         ),
     ];
     let unknown =

@@ -180,6 +180,15 @@ fn rejects_means_that_cannot_be_estimated() {
         assert_eq!(status, Some(2), "{arguments:?}: {told}");
         assert!(told.contains(said), "{arguments:?}: {told}");
     }
+    let both = ["--formula", "k ~ C(v) + v", "--means", "v"];
+    let (status, _, told) = run(FRUIT, &both);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("as a category and as a number"), "{told}");
+    let rows = (0..303).map(|row| format!("f{},{}\n", row % 101, row * row % 17));
+    let many = format!("id,k\n{}", rows.collect::<String>());
+    let (status, _, told) = run(&many, &["--formula", "k ~ id", "--means", "id"]);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("there are 101 means"), "{told}");
     // Over varieties the mean of a dose needs the missing cell too; without the interaction
     // neither does.
     let plain = ["--formula", "k ~ variety + dose + v", "--means", "variety"];

@@ -11,7 +11,7 @@ use crate::store::documents::{
     DocumentRecord, document_digest, document_keys, find_documents, insert_document,
     insert_document_of_run, mend_document,
 };
-use crate::store::file::{PATIENCE, create_schema, execute, open_existing, store_error};
+use crate::store::file::{PATIENCE, WRITING, create_schema, execute, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use smol_str::SmolStr;
 use std::path::Path;
@@ -133,13 +133,7 @@ fn write_into(path: &Path, fill: &Fill) -> Result<(), Error> {
     drop(open_existing(path)?);
     let mut connection = Connection::open(path).map_err(failed)?;
     connection.busy_timeout(PATIENCE).map_err(failed)?;
-    // A committed run is on disk. Up to 64 MiB of pages are not read again.
-    for (name, value) in [
-        ("cache_size", "-65536"),
-        ("journal_mode", "DELETE"),
-        ("synchronous", "FULL"),
-        ("foreign_keys", "ON"),
-    ] {
+    for (name, value) in WRITING {
         connection
             .pragma_update(None, name, value)
             .map_err(failed)?;
@@ -196,7 +190,7 @@ fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()
     Ok(())
 }
 
-/// Adds a result unless an earlier run has.
+/// Adds a result unless an earlier run has added it.
 fn insert_result(
     transaction: &Transaction,
     key: &str,

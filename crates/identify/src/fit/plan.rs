@@ -26,8 +26,9 @@ use windfall_signal::impact::Impact;
 /// Factors of stiffness and damping tried when the first start fails.
 const OTHER_STARTS: [(f64, f64); 4] = [(0.3, 1.0), (3.0, 1.0), (1.0, 0.2), (1.0, 3.0)];
 
-/// How much closer to its minimum the fit comes that only shows the noise: it may end at that of
-/// averaged samples, and weights, and with them the cost, follow its last digits.
+/// Cost tolerance of the first fit, which serves only to estimate the noise, over that of the final
+/// one: it may end at the minimum for averaged samples, and weights and cost depend on its last
+/// digits.
 const CLOSER: f64 = 0.01;
 
 /// Everything decided before the minimiser runs.

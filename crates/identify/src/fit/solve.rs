@@ -34,7 +34,7 @@ const ONSET_SHIFT: f64 = 1.5;
 const MOST_SHIFTS: usize = 4;
 /// A minimum is another one if it is lower by this; units of χ².
 const LOWER_BY: f64 = 1e-3;
-/// Costs that are this much apart show the same noise; 1.
+/// Relative difference below which two costs show the same noise; 1.
 const ALIKE: f64 = 0.01;
 /// Free parameters that one fit can have.
 pub(crate) const LARGEST_FREE: usize = 9;
@@ -348,8 +348,8 @@ fn may_be_polished<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize
     minimum.stop == Stop::Converged && estimator.averages() && !means
 }
 
-/// Residuals of instantaneous samples at the minimum for averaged ones, where they show the same
-/// noise: their cost is the same but for a hundredth.
+/// Residuals of instantaneous samples at the minimum for averaged ones; `None` unless both have
+/// the same cost to 1 % and so show the same noise.
 fn residuals_alike<L: FreeLaw<N>, const N: usize, const W: usize, const P: usize>(
     estimator: &Estimator<L, N, W, P>,
     minimum: &Minimum<P>,

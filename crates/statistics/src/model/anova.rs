@@ -168,8 +168,8 @@ pub fn lack_of_fit(
     residual_ss: f64,
     residual_df: usize,
 ) -> Option<LackOfFit> {
-    // Rows with equal settings have equal keys; that others have them too is left to the hash
-    // to prevent.
+    // Sorted by a hash, rows with equal settings stand together; a row of numbers as the key of
+    // each would need as much memory as the settings.
     let mut keys = vec![DefaultHasher::new(); y.len()];
     for column in settings.column_iter() {
         for (key, value) in keys.iter_mut().zip(&column) {
@@ -181,7 +181,8 @@ pub fn lack_of_fit(
     let mut order: Vec<(u64, usize)> = keys.zip(0..).collect();
     order.sort_unstable();
     let (mut pure_ss, mut pure_df) = (0.0, 0);
-    for group in order.chunk_by(|a, b| a.0 == b.0) {
+    let same = |a: usize, b: usize| settings.row(a) == settings.row(b);
+    for group in order.chunk_by(|a, b| a.0 == b.0 && same(a.1, b.1)) {
         let group: Vec<usize> = group.iter().map(|(_, row)| *row).collect();
         let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
         pure_ss += group

@@ -47,20 +47,22 @@ pub fn cross_validate(
     parts: Parts,
 ) -> Option<CrossValidation> {
     let rows = y.len();
-    let units = match parts.units {
-        Some(units) => rows_of_units(units),
-        None => (0..rows).map(|row| vec![row]).collect(),
+    let count = match parts.units {
+        Some(units) => units.iter().max().map_or(0, |last| last + 1),
+        None => rows,
     };
-    let folds = parts.folds.clamp(2, units.len().max(2));
-    let mut order: Vec<usize> = (0..units.len()).collect();
+    let folds = parts.folds.clamp(2, count.max(2));
+    let mut order: Vec<usize> = (0..count).collect();
     shuffle(&mut order, parts.seed);
+    let mut part_of_unit = vec![0; count];
+    for (place, unit) in order.iter().enumerate() {
+        part_of_unit[*unit] = place % folds;
+    }
+    let part = |row: usize| part_of_unit[parts.units.map_or(row, |units| units[row])];
     let (mut error, mut total) = (0.0, 0.0);
     for fold in 0..folds {
-        let left_out = order.iter().skip(fold).step_by(folds);
-        let left_out: Vec<usize> = left_out.flat_map(|unit| units[*unit].clone()).collect();
-        let mut inside = vec![true; rows];
-        left_out.iter().for_each(|row| inside[*row] = false);
-        let kept: Vec<usize> = (0..rows).filter(|row| inside[*row]).collect();
+        let (left_out, kept): (Vec<usize>, Vec<usize>) =
+            (0..rows).partition(|row| part(*row) == fold);
         let train_x = x.select_rows(&kept);
         let train_y: Vec<f64> = kept.iter().map(|row| y[*row]).collect();
         let reduced = reduce(&train_x, &train_y);
@@ -88,15 +90,6 @@ pub fn cross_validate(
         rms: (error / rows as f64).sqrt(),
         r2: 1.0 - error / total,
     })
-}
-
-fn rows_of_units(units: &[usize]) -> Vec<Vec<usize>> {
-    let count = units.iter().max().map_or(0, |last| last + 1);
-    let mut rows = vec![Vec::new(); count];
-    for (row, unit) in units.iter().enumerate() {
-        rows[*unit].push(row);
-    }
-    rows
 }
 
 /// Fisher and Yates' shuffle.

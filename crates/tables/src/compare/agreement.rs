@@ -4,7 +4,6 @@ use crate::compare::group_outcome::statistics_error;
 use crate::regress::findings::finding;
 use crate::rows::lines_text;
 use serde::Serialize;
-
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::Data;

@@ -140,9 +140,9 @@ pub(crate) fn lack_finding(lack_of_fit: Option<&LackOfFit>) -> Option<FindingOut
         finding(
             "lack-of-fit",
             format!(
-                "repeated rows scatter less than the model misses them by (p {}): a term is \
-                 missing, or repeats were made closer together than other rows (within one batch \
-                 or day)",
+                "the model misses rows by more than repeated rows scatter (p {}): a term may be \
+                 missing, or repeats were made in the same batch or on the same day and differ \
+                 less than other rows do",
                 probability(lack.p)
             ),
         )

@@ -102,7 +102,7 @@ pub(crate) struct Model<'a> {
     /// Which rows of the table these are.
     pub kept: &'a [usize],
     /// Estimate of a sum of all its columns.
-    pub estimate: &'a dyn Fn(&[f64]) -> Result<Estimated, Error>,
+    pub estimate: &'a dyn Fn(&[f64]) -> Estimated,
 }
 
 /// Marginal means for each request, "variety" or "variety,dose".
@@ -132,10 +132,9 @@ pub(crate) fn means_of(
         }
         let rows = marginal_rows(model.frame, &table, &by).map_err(Error::Statistics)?;
         check_estimable(model, text, &rows)?;
-        let estimate = |weights: &[f64]| (model.estimate)(weights);
         let mut means = Vec::new();
         for (levels, row) in rows.groups.iter().zip(rows.rows.row_iter()) {
-            let own = estimate(&row.iter().copied().collect::<Vec<_>>())?;
+            let own = (model.estimate)(&row.iter().copied().collect::<Vec<_>>());
             let (low, high) = interval(&own, confidence);
             means.push(MeanOutcome {
                 levels: levels.clone(),
@@ -146,7 +145,7 @@ pub(crate) fn means_of(
                 high,
             });
         }
-        let found = differences(&rows, adjustment, confidence, &estimate)?;
+        let found = differences(&rows, adjustment, confidence, model.estimate);
         let name = |place: usize| rows.groups[place].join(" ");
         let pairs = found.iter().map(|own| DifferenceOutcome {
             pair: format!("{} - {}", name(own.second), name(own.first)),

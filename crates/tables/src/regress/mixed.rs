@@ -267,10 +267,10 @@ fn means(
         kept,
         estimate: &|weights| {
             let own: Vec<f64> = fitted.columns.iter().map(|own| weights[*own]).collect();
-            Ok(match adjusted {
+            match adjusted {
                 None => estimate(&fitted.fit, uncertainty, &own),
                 Some(adjusted) => kenward_roger_estimate(&fitted.fit, adjusted, &own),
-            })
+            }
         },
     };
     means_of(&model, &request.means, request.adjust, request.confidence)

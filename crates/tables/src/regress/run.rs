@@ -371,7 +371,7 @@ fn means(
         aliased: &fit.aliased,
         table: &data.table,
         kept: &rows.kept,
-        estimate: &|weights| Ok(fit.estimate(weights, &covariance)),
+        estimate: &|weights| fit.estimate(weights, &covariance),
     };
     means_of(&model, &request.means, request.adjust, request.confidence)
 }
