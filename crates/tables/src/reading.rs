@@ -80,8 +80,8 @@ fn declare(data: &mut Data, name: &str, levels: &[String]) -> Result<(), Error> 
     let found = found.map_err(|(row, text)| Error::Refused {
         place: Place::at(&data.path, data.lines[row - 1]),
         problem: format!(
-            "\"{text}\" is none of the levels declared for {name:?}: {}; mend the cell, or declare \
-             it too",
+            "\"{text}\" is none of the levels declared for {name:?}: {}; correct the cell, or \
+             declare this level too",
             levels.join(", ")
         ),
     })?;

@@ -27,6 +27,7 @@ mod known;
 mod library;
 mod means;
 mod messages;
+mod on_table;
 mod outputs;
 mod page_quantities;
 mod regress;

@@ -2,37 +2,21 @@
 
 #![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use crate::on_table::{self, close};
 use serde_json::Value;
 
 const FRUIT: &str = "variety,dose,v,k\nFuji,low,0.1,31.2\nFuji,high,0.3,35.1\nFuji,high,0.5,36.4\n\
     Gala,low,0.2,34\nGala,low,0.4,35.9\nGala,high,0.1,36.2\nGala,high,0.6,40.1\n\
     Idared,low,0.3,38.3\nIdared,low,0.5,39.9\nIdared,high,0.2,41\nIdared,low,0.4,38.8\n";
 
+const REGRESS: [&str; 4] = ["regress", "t.csv", "--folds", "0"];
+
 fn run(table: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("t.csv"), table).unwrap();
-    let mut command = Command::cargo_bin("windfall").unwrap();
-    let command = command.args(["regress", "t.csv", "--folds", "0"]);
-    let output = command.args(arguments).current_dir(folder.path()).output();
-    let output = output.unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.code(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
+    on_table::run(table, &[&REGRESS[..], arguments].concat())
 }
 
 fn json(table: &str, arguments: &[&str]) -> Value {
-    let (status, output, told) = run(table, &[arguments, &["--format", "json"]].concat());
-    assert_eq!(status, Some(0), "{arguments:?}: {told}");
-    serde_json::from_str(&output).unwrap()
-}
-
-fn close(found: &Value, expected: f64, limit: f64) {
-    let found = found.as_f64().unwrap();
-    assert!((found / expected - 1.0).abs() < limit, "{found} {expected}");
+    on_table::json(table, &[&REGRESS[..], arguments].concat())
 }
 
 /// Against emmeans 1.8.4 in R 4.2, `k ~ variety * dose + v`; Tukey's p against SciPy 1.17, as R's

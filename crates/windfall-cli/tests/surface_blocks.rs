@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use crate::on_table;
 use serde_json::Value;
 
 /// Flight times of paper helicopters in s/100, in two blocks (Box and Draper 2007, Response
@@ -25,29 +25,14 @@ Time,Temp,Block,Yield\n80,170,B1,80.5\n80,180,B1,81.5\n90,170,B1,82\n\
 85,175,B2,79.7\n85,175,B2,79.8\n85,175,B2,79.5\n92.07,175,B2,78.4\n\
 77.93,175,B2,75.6\n85,182.07,B2,78.5\n85,167.93,B2,77\n";
 
-fn run(table: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("t.csv"), table).unwrap();
-    let mut command = Command::cargo_bin("windfall").unwrap();
-    let command = command.args(["surface", "t.csv"]).args(arguments);
-    let output = command.current_dir(folder.path()).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.code(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
-}
+const SURFACE: [&str; 2] = ["surface", "t.csv"];
 
 fn json(table: &str, arguments: &[&str]) -> Value {
-    let (status, output, told) = run(table, &[arguments, &["--format", "json"]].concat());
-    assert_eq!(status, Some(0), "{arguments:?}: {told}");
-    serde_json::from_str(&output).unwrap()
+    on_table::json(table, &[&SURFACE[..], arguments].concat())
 }
 
 fn close(found: &Value, expected: f64) {
-    let found = found.as_f64().unwrap();
-    assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+    on_table::close(found, expected, 1e-8);
 }
 
 const OF_HELICOPTERS: [&str; 18] = [
@@ -158,7 +143,10 @@ fn rejects_blocks_that_are_none() {
         (REACTION, "Day", "there is no column \"Day\""),
         (REACTION, "Time", "is a factor or a response"),
     ] {
-        let (status, _, told) = run(table, &[&OF_REACTION[..], &["--block", column]].concat());
+        let (status, _, told) = on_table::run(
+            table,
+            &[&SURFACE[..], &OF_REACTION[..], &["--block", column]].concat(),
+        );
         assert_eq!(status, Some(2), "{column}: {told}");
         assert!(told.contains(said), "{column}: {told}");
     }

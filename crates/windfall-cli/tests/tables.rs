@@ -3,29 +3,16 @@
 
 #![allow(clippy::unwrap_used)]
 
-use assert_cmd::Command;
+use crate::on_table;
 use serde_json::Value;
 
-/// Exit status, output and messages of a command on a table.
+/// [`on_table::run`] with arguments between `~`.
 fn run(table: &str, arguments: &str) -> (Option<i32>, String, String) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("t.csv"), table).unwrap();
-    let mut command = Command::cargo_bin("windfall").unwrap();
-    let words: Vec<&str> = arguments.split('~').collect();
-    let output = command.args(words).current_dir(folder.path()).output();
-    let output = output.unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.code(),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
+    on_table::run(table, &arguments.split('~').collect::<Vec<_>>())
 }
 
 fn json(table: &str, arguments: &str) -> Value {
-    let (status, output, told) = run(table, &format!("{arguments}~--format~json"));
-    assert_eq!(status, Some(0), "{arguments}: {told}");
-    serde_json::from_str(&output).unwrap()
+    on_table::json(table, &arguments.split('~').collect::<Vec<_>>())
 }
 
 fn codes(outcome: &Value) -> Vec<&str> {
