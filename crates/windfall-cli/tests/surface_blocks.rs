@@ -179,3 +179,53 @@ fn says_what_blocks_hide() {
         "{told}"
     );
 }
+
+/// Correlated factors, where the types of analysis part ways.
+const CORRELATED: &str = "\
+A,B,y\n-1,-0.8,10.2\n-0.6,-0.2,12.9\n-0.9,0.1,12.1\n0.2,0.4,15.8\n0.5,0.9,14.1\n\
+0.8,0.3,16.9\n1,1,14.6\n0.1,-0.5,14.4\n-0.2,0.6,13.9\n0.7,0.8,15.2\n-0.5,-1,10.8\n0.3,0,16.1\n";
+
+/// Against models with and without the term, but for those that contain it (R 4.2, `deviance` of
+/// `lm`), over the residuals of all terms.
+#[test]
+fn reference_hierarchical_tests_of_correlated_factors() {
+    let factors = ["--response", "y", "--factor", "A", "--factor", "B"];
+    let ranges = ["--range", "A=-1..1", "--range", "B=-1..1"];
+    let found = json(
+        CORRELATED,
+        &[&factors[..], &ranges, &["--anova", "2"]].concat(),
+    );
+    let terms = found["responses"][0]["terms"].as_array().unwrap();
+    for (own, (name, ss, f, p)) in terms[1..].iter().zip([
+        (
+            "A",
+            19.5087553306059,
+            225.514317012656,
+            5.49334363006765e-06,
+        ),
+        ("B", 0.477749721310728, 5.52261793633502, 0.0570564852823879),
+        (
+            "AB",
+            0.0579274832144119,
+            0.66962123374759,
+            0.444459535466337,
+        ),
+        (
+            "A^2",
+            0.360417933449307,
+            4.16630393500399,
+            0.0873049517520193,
+        ),
+        (
+            "B^2",
+            3.13635447407061,
+            36.2551492980181,
+            0.000946820598764744,
+        ),
+    ]) {
+        assert_eq!(own["term"], name);
+        close(&own["ss"], ss);
+        close(&own["f"], f);
+        close(&own["p"], p);
+    }
+}

@@ -63,15 +63,23 @@ pub struct Anova {
 ///
 /// * `terms`: positions of the terms of the frame that are in the model
 pub fn anova(frame: &ModelFrame, reduced: &Reduced, terms: &[usize], kind: AnovaType) -> Anova {
-    anova_within((frame, reduced), &[], terms, kind)
+    let contains = |outer: usize, inner: usize| {
+        let outer: Vec<usize> = frame.terms[outer].atoms.iter().map(|a| a.0).collect();
+        let mut inner = frame.terms[inner].atoms.iter().map(|a| a.0);
+        inner.all(|atom| outer.contains(&atom))
+    };
+    anova_within((frame, reduced), &[], terms, kind, &contains)
 }
 
 /// [`anova`] with the columns of blocks, which stand before all terms.
+///
+/// * `contains`: whether a term, the first, contains another
 pub fn anova_within(
     (frame, reduced): (&ModelFrame, &Reduced),
     blocks: &[usize],
     terms: &[usize],
     kind: AnovaType,
+    contains: &dyn Fn(usize, usize) -> bool,
 ) -> Anova {
     let base = frame.intercept.then_some(0).into_iter();
     let base: Vec<usize> = base.chain(blocks.iter().copied()).collect();
@@ -92,11 +100,6 @@ pub fn anova_within(
     };
     let (residual_ss, estimated) = columns_of(&|_| true);
     let residual_df = reduced.rows.saturating_sub(estimated);
-    let contains = |outer: usize, inner: usize| {
-        let outer: Vec<usize> = frame.terms[outer].atoms.iter().map(|a| a.0).collect();
-        let mut inner = frame.terms[inner].atoms.iter().map(|a| a.0);
-        inner.all(|atom| outer.contains(&atom))
-    };
     let rows = terms.iter().enumerate().map(|(place, term)| {
         let ((without, few), (with, many)) = match kind {
             AnovaType::Sequential => {

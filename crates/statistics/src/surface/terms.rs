@@ -225,6 +225,11 @@ pub fn monomial_value(powers: &[u32], factors: &[f64]) -> f64 {
         .product()
 }
 
+/// Whether a term contains another: `AB` and `A^2` both contain `A`.
+pub fn contains(outer: &[u32], inner: &[u32]) -> bool {
+    outer.iter().zip(inner).all(|(outer, inner)| outer >= inner)
+}
+
 /// Whether every term's divisors are there.
 pub fn is_hierarchical(monomials: &[Monomial]) -> bool {
     monomials.iter().all(|powers| {

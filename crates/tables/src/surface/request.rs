@@ -39,7 +39,8 @@ pub struct SurfaceRequest {
     /// this is left out; "none" for none
     #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN"))]
     pub block: Option<String>,
-    /// Type of the analysis of variance, in coded units
+    /// Type of the analysis of variance, in coded units: 1 in order, 2 after all that do not
+    /// contain the term (AB and A^2 contain A), 3 after all others
     #[cfg_attr(feature = "clap", arg(long, default_value = "3", value_name = "TYPE", value_parser = anova_type()))]
     pub anova: AnovaType,
     /// Level of the intervals

@@ -38,7 +38,9 @@ use windfall_statistics::surface::analysis::{
 };
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::desirability::Goal;
-use windfall_statistics::surface::terms::{is_hierarchical, letter, monomial_name, surface_terms};
+use windfall_statistics::surface::terms::{
+    contains, is_hierarchical, letter, monomial_name, surface_terms,
+};
 
 /// Fits response surfaces, and draws them where figures are asked for.
 ///
@@ -274,7 +276,14 @@ fn model_of(
     let fit = &surface.fit;
     let every: Vec<usize> = (0..surface.terms.monomials.len()).collect();
     let whole = (&surface.frame, &surface.reduced);
-    let variance = anova_within(whole, &surface.block_columns(), &every, request.anova);
+    let monomials = &surface.terms.monomials;
+    let variance = anova_within(
+        whole,
+        &surface.block_columns(),
+        &every,
+        request.anova,
+        &|outer, inner| contains(&monomials[outer], &monomials[inner]),
+    );
     let influence = influence(fit, y);
     let vif = inflation(&surface.frame, fit);
     let mean = y.iter().sum::<f64>() / y.len() as f64;
