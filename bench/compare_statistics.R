@@ -172,59 +172,7 @@ check_mixed("days by ML", days, y ~ day + (1 + day | subject), TRUE)
 check_mixed("impacts", impacts, k ~ V * variety + R + (1 | specimen))
 check_mixed("impacts by ML", impacts, k ~ V + R + (1 | specimen), TRUE)
 
-# Marginal means and differences of all pairs against emmeans: unbalanced tables with a covariate,
-# interactions, missing cells, and mixed models by both kinds of degrees of freedom.
-check_means <- function(group, table, formula, by, adjust = "tukey", mixed = NULL) {
-  path <- write_table(group, table)
-  text <- shQuote(paste(deparse(formula, width.cutoff = 500), collapse = ""))
-  options <- c("--means", paste(by, collapse = ","), "--adjust", adjust, "--folds 0")
-  if (!is.null(mixed)) options <- c("--means", paste(by, collapse = ","), "--adjust", adjust, "--df", mixed)
-  found <- ask(path, "--formula", text, options)$means
-  fit <- if (is.null(mixed)) lm(formula, table) else lmer(formula, table)
-  method <- if (identical(mixed, "kenward-roger")) "kenward-roger" else "satterthwaite"
-  grid <- if (is.null(mixed)) emmeans(fit, by, data = table) else emmeans(fit, by, data = table, lmer.df = method)
-  own <- as.data.frame(summary(grid, infer = TRUE))
-  key <- do.call(paste, c(lapply(own[by], as.character), sep = " "))
-  means <- found$means[[1]]
-  order <- match(vapply(means$levels, paste, "", collapse = " "), key)
-  limit <- if (is.null(mixed)) 1e-8 else 1e-5
-  compare(group, "mean", means$mean, own$emmean[order], limit)
-  compare(group, "standard error", means$se, own$SE[order], limit)
-  compare(group, "degrees of freedom", means$df, own$df[order], limit)
-  compare(group, "interval", c(means$low, means$high), c(own$lower.CL[order], own$upper.CL[order]), limit)
-  pairs <- as.data.frame(summary(contrast(grid, "revpairwise", adjust = adjust), infer = TRUE))
-  named <- function(a, b) paste(a, b, sep = " - ")
-  sides <- strsplit(found$differences[[1]]$pair, " - ")
-  mine <- vapply(sides, function(own) named(own[1], own[2]), "")
-  turned <- vapply(sides, function(own) named(own[2], own[1]), "")
-  labels <- gsub("[()]", "", as.character(pairs$contrast))
-  at <- match(mine, labels)
-  sign <- ifelse(is.na(at), -1, 1)
-  at <- ifelse(is.na(at), match(turned, labels), at)
-  differences <- found$differences[[1]]
-  compare(group, "difference", differences$difference, sign * pairs$estimate[at], limit)
-  compare(group, "its standard error", differences$se, pairs$SE[at], limit)
-  # ptukey of R is off by up to 1e-5; windfall's agrees with SciPy's to 1e-10.
-  if (adjust == "tukey") compare(group, "p of differences", 1 + differences$p, 1 + pairs$p.value[at], 1e-5)
-  else compare(group, "p of differences", differences$p, pairs$p.value[at], limit)
-}
-set.seed(11)
-fruit <- data.frame(
-  variety = sample(c("Fuji", "Gala", "Idared", "Jonagold"), 200, TRUE, c(4, 3, 2, 1)),
-  dose = sample(c("low", "mid", "high"), 200, TRUE, c(1, 2, 3)),
-  lot = paste0("L", sample(1:12, 200, TRUE)), v = runif(200, 0.1, 0.6)
-)
-shift <- rnorm(12, sd = 2)
-fruit$k <- signif(30 + 3 * as.integer(factor(fruit$variety)) + 2 * as.integer(factor(fruit$dose)) +
-  8 * fruit$v + shift[as.integer(factor(fruit$lot))] + rnorm(200, sd = 2), 6)
-check_means("means of one way", fruit, k ~ variety, "variety")
-check_means("means of two ways with a covariate", fruit, k ~ variety + dose + v, "variety")
-check_means("means of an interaction", fruit, k ~ variety * dose + v, c("variety", "dose"))
-check_means("means over an interaction", fruit, k ~ variety * dose + v, "dose", "none")
-check_means("means with a slope in each", fruit, k ~ variety * v + dose, "variety", "holm")
-check_means("means of a logarithm", fruit, log(k) ~ variety + log(v), "variety")
-check_means("means, Satterthwaite", fruit, k ~ variety + dose + v + (1 | lot), "variety", "tukey", "satterthwaite")
-check_means("means, Kenward-Roger", fruit, k ~ variety * dose + (1 | lot), c("variety", "dose"), "none", "kenward-roger")
+source("bench/compare_means.R")
 
 # Central composite designs in blocks, as windfall makes them: `surface` against lm with the
 # block, pure error from rows with equal settings within a block.

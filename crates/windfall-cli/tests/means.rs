@@ -70,7 +70,7 @@ fn reference_means_of_an_unbalanced_table() {
         ),
     ];
     let differences = means["differences"].as_array().unwrap();
-    assert_eq!(differences[0]["pair"], "Gala - Fuji");
+    assert_eq!(differences[0]["contrast"], "Gala - Fuji");
     for (own, (difference, se, t, p)) in differences.iter().zip(expected) {
         close(&own["difference"], difference, 1e-11);
         close(&own["se"], se, 1e-11);
@@ -99,7 +99,10 @@ fn closed_form_means_as_csv() {
     ];
     let (_, text, _) = run(FRUIT, &arguments);
     let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(lines[0], "of,what,estimate,se,df,t,p,low,high");
+    assert_eq!(
+        lines[0],
+        "of,what,estimate,se,df,t,p,low,high,original,original_low,original_high"
+    );
     assert!(lines[1].starts_with("variety,Fuji,34.2333333333"), "{text}");
     assert!(
         lines[4].starts_with("variety,Gala - Fuji,2.3166666666"),
@@ -139,7 +142,6 @@ fn conserves_means_under_other_contrasts() {
 #[test]
 fn rejects_means_that_cannot_be_estimated() {
     // Fuji at a low dose is missing.
-    let missing = FRUIT.replace("Fuji,low,0.1,31.2\n", "");
     for (table, arguments, said) in [
         (FRUIT, &["--means", "variety,"][..], "separated by commas"),
         (
@@ -154,9 +156,76 @@ fn rejects_means_that_cannot_be_estimated() {
             "without --select",
         ),
         (
-            &missing,
-            &["--means", "variety"],
-            "the mean of Fuji cannot be estimated",
+            FRUIT,
+            &["--slopes", "variety"],
+            "variety is no column of numbers of the model: there are v",
+        ),
+        (FRUIT, &["--slopes", "v,"], "V,dose | variety"),
+        (FRUIT, &["--compare", "control"], "say --means or --slopes"),
+        (
+            FRUIT,
+            &["--means", "dose", "--at", "variety=1"],
+            "--at variety: variety is no column of numbers",
+        ),
+        (FRUIT, &["--means", "dose", "--at", "v=x"], "and its value"),
+        (
+            FRUIT,
+            &["--means", "variety", "--compare", "control=none"],
+            "no row has it in variety: there are Fuji, Gala, Idared",
+        ),
+        (
+            FRUIT,
+            &["--means", "variety", "--compare", "polynomial"],
+            "--levels 'variety=Fuji,Gala,Idared'",
+        ),
+        (
+            FRUIT,
+            &["--means", "variety,dose", "--compare", "polynomial"],
+            "write 'dose | variety'",
+        ),
+        (
+            FRUIT,
+            &["--means", "variety", "--compare", "a = 1, -1"],
+            "2 weights for 3 means, in this order: Fuji, Gala, Idared",
+        ),
+        (
+            FRUIT,
+            &["--means", "variety", "--compare", "a = 1, -1, 1"],
+            "sum to 0, these to 1",
+        ),
+        (
+            FRUIT,
+            &["--means", "variety", "--compare", "a = 0, 0, 0"],
+            "all weights are zero",
+        ),
+        (
+            FRUIT,
+            &["--means", "variety", "--compare", "all"],
+            "expected pairs, control",
+        ),
+        (
+            FRUIT,
+            &[
+                "--means",
+                "variety",
+                "--compare",
+                "control",
+                "--compare",
+                "pairs",
+            ],
+            "one after another",
+        ),
+        (
+            FRUIT,
+            &[
+                "--means",
+                "variety",
+                "--compare",
+                "control",
+                "--adjust",
+                "tukey",
+            ],
+            "Tukey's is for all pairs",
         ),
     ] {
         let formula = ["--formula", "k ~ variety*dose + v"];
@@ -173,14 +242,129 @@ fn rejects_means_that_cannot_be_estimated() {
     let (status, _, told) = run(&many, &["--formula", "k ~ id", "--means", "id"]);
     assert_eq!(status, Some(2), "{told}");
     assert!(told.contains("there are 101 means"), "{told}");
-    // Over varieties the mean of a dose needs the missing cell too; without the interaction
-    // neither does.
-    let plain = ["--formula", "k ~ variety + dose + v", "--means", "variety"];
+}
+
+/// Fuji at a low dose is missing: what rests on it is named and left out.
+#[test]
+fn detects_means_that_cannot_be_estimated() {
+    let missing = FRUIT.replace("Fuji,low,0.1,31.2\n", "");
+    let told = |found: &Value| {
+        let findings = found["findings"].as_array().unwrap().iter();
+        let own = findings.filter(|own| own["code"] == "not-estimable");
+        own.map(|own| own["message"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let formula = ["--formula", "k ~ variety*dose + v"];
+    let of = |arguments: &[&str]| json(&missing, &[&formula[..], arguments].concat());
+    let found = of(&["--means", "variety"]);
+    assert_eq!(found["means"][0]["means"].as_array().unwrap().len(), 2);
     assert_eq!(
-        json(&missing, &plain)["means"][0]["means"]
-            .as_array()
-            .unwrap()
-            .len(),
-        3
+        found["means"][0]["differences"][0]["contrast"],
+        "Idared - Gala"
     );
+    assert_eq!(
+        found["means"][0]["differences"].as_array().unwrap().len(),
+        1
+    );
+    assert_eq!(told(&found).len(), 1);
+    assert!(
+        told(&found)[0].contains("no mean of Fuji"),
+        "{:?}",
+        told(&found)
+    );
+    assert!(
+        told(&found)[0].contains("depends on variety[Idared]:dose"),
+        "{:?}",
+        told(&found)
+    );
+    // A sum of one's own that needs the missing cell is named.
+    let own = of(&["--means", "variety", "--compare", "Gala - Fuji = -1, 1, 0"]);
+    assert_eq!(own["means"][0]["differences"].as_array().unwrap().len(), 0);
+    assert!(
+        told(&own)[1].contains("Gala - Fuji cannot be estimated"),
+        "{:?}",
+        told(&own)
+    );
+    // Over varieties the mean of a high dose needs no missing cell, that of a low one does.
+    let found = of(&["--means", "dose", "--at", "v=0.2"]);
+    assert_eq!(found["means"][0]["means"][0]["levels"][0], "high");
+    assert_eq!(found["means"][0]["means"].as_array().unwrap().len(), 1);
+    // Where each dose misses a variety, no mean over varieties is left.
+    let none = missing.replace("Gala,high,0.1,36.2\nGala,high,0.6,40.1\n", "");
+    let arguments = ["--formula", "k ~ variety*dose", "--means", "dose"];
+    let (status, _, error) = run(&none, &arguments);
+    assert_eq!(status, Some(2), "{error}");
+    assert!(
+        error.contains("the mean of high cannot be estimated"),
+        "{error}"
+    );
+    // Without the interaction none does.
+    let plain = ["--formula", "k ~ variety + dose + v", "--means", "variety"];
+    let found = json(&missing, &plain);
+    assert_eq!(found["means"][0]["means"].as_array().unwrap().len(), 3);
+    assert!(told(&found).is_empty());
+}
+
+/// Against emmeans 1.8.4 in R 4.2; p of several t from mvtnorm 1.1 asked for six digits.
+#[test]
+fn reference_contrasts_with_a_control_slopes_and_ratios() {
+    let control = json(
+        FRUIT,
+        &[
+            "--formula",
+            "log(k) ~ variety + v",
+            "--means",
+            "variety",
+            "--compare",
+            "control=Gala",
+        ],
+    );
+    let means = &control["means"][0];
+    assert_eq!(means["adjusted"], "Dunnett");
+    assert_eq!(means["original"], "k");
+    let scaled = &means["means"][1]["original"];
+    close(&scaled["value"], 36.50310184323, 1e-11);
+    close(&scaled["low"], 34.51020391662, 1e-11);
+    close(&scaled["high"], 38.61108579355, 1e-11);
+    let joint = [0.2377404069, 0.1138750902];
+    for ((own, p), (name, difference, ratio)) in means["differences"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(joint)
+        .zip([
+            ("Fuji - Gala", -0.06016752429646, 0.9416067783576),
+            ("Idared - Gala", 0.07341818766644, 1.0761804882331),
+        ])
+    {
+        assert_eq!(own["contrast"], name);
+        close(&own["difference"], difference, 1e-11);
+        close(&own["p"], p, 1e-7);
+        close(&own["ratio"]["value"], ratio, 1e-11);
+    }
+    close(&means["tests"][0]["p"], 0.02267285826826, 1e-11);
+    let slopes = json(
+        FRUIT,
+        &["--formula", "k ~ variety*v", "--slopes", "v,variety"],
+    );
+    let slopes = slopes["means"][0]["means"].as_array().unwrap();
+    for (own, (slope, se)) in slopes.iter().zip([
+        (13.0, 5.661740963208),
+        (8.983050847458, 4.169644019075),
+        (-2.8, 7.161598786245),
+    ]) {
+        close(&own["mean"], slope, 1e-9);
+        close(&own["se"], se, 1e-9);
+    }
+    let within = ["--formula", "k ~ variety*dose", "--means", "variety | dose"];
+    let within = json(FRUIT, &[&within[..], &["--adjust", "holm"]].concat());
+    let differences = within["means"][0]["differences"].as_array().unwrap();
+    assert_eq!(differences[3]["within"][0], "low");
+    for (own, p) in differences
+        .iter()
+        .zip([0.3517, 0.1120, 0.3517, 0.1006, 0.0204, 0.0665])
+    {
+        let found = own["p"].as_f64().unwrap();
+        assert!((found - p).abs() < 5e-5, "{own}");
+    }
 }

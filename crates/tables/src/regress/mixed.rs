@@ -3,8 +3,9 @@
 use crate::regress::findings::{
     aliased_findings, code_findings, finding, left_out_finding, row_count,
 };
-use crate::regress::means::{MeansOutcome, Model, means_of};
-use crate::regress::outcome::{RangeOutcome, ranges_of};
+use crate::regress::means::outcome::MeansOutcome;
+use crate::regress::means::run::{Model, means_of};
+use crate::regress::outcome::{OriginalPrediction, RangeOutcome, original_prediction, ranges_of};
 use crate::regress::request::{FreedomMethod, RegressRequest};
 use crate::rows::RowCount;
 use serde::Serialize;
@@ -28,7 +29,8 @@ use windfall_statistics::mixed::summary::variance_shares;
 use windfall_statistics::model::anova::AnovaRow;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
-use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::formula_syntax::{Node, spelling};
+use windfall_statistics::model::mean_contrasts::JointTest;
 use windfall_statistics::model::model_frame::{
     ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
 };
@@ -77,6 +79,8 @@ pub struct MixedPredictionOutcome {
     /// Means and intervals.
     #[serde(flatten)]
     pub prediction: MixedPrediction,
+    /// The same on the scale of the column that the response is a function of.
+    pub original: Option<OriginalPrediction>,
 }
 
 /// A fitted mixed model.
@@ -208,6 +212,13 @@ pub fn regress_mixed(
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
     findings.extend(own.chain(profile_findings));
+    let (means, not_estimable) = means(
+        request,
+        data,
+        (formula, &kept),
+        (&fitted, &uncertainty, adjusted.as_ref()),
+    )?;
+    findings.extend(not_estimable);
     let shares = variance_shares(&fitted.fit);
     let fit = &fitted.fit;
     Ok(MixedOutcome {
@@ -243,13 +254,8 @@ pub fn regress_mixed(
         bic: fit.bic,
         removed: Vec::new(),
         effects: effects(&fitted),
-        predictions: predictions(request, &fitted, &uncertainty)?,
-        means: means(
-            request,
-            data,
-            &kept,
-            (&fitted, &uncertainty, adjusted.as_ref()),
-        )?,
+        predictions: predictions(request, formula.response.as_ref(), &fitted, &uncertainty)?,
+        means,
         findings,
     })
 }
@@ -257,23 +263,44 @@ pub fn regress_mixed(
 fn means(
     request: &RegressRequest,
     data: &Data,
-    kept: &[usize],
+    (formula, kept): (&Formula, &[usize]),
     (fitted, uncertainty, adjusted): (&Fitted, &VarianceUncertainty, Option<&KenwardRoger>),
-) -> Result<Vec<MeansOutcome>, Error> {
+) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
+    let fit = &fitted.fit;
     let model = Model {
         frame: &fitted.rows.frame,
         aliased: &fitted.aliased,
         table: &data.table,
         kept,
+        response: formula.response.as_ref(),
         estimate: &|weights| {
             let own: Vec<f64> = fitted.columns.iter().map(|own| weights[*own]).collect();
             match adjusted {
-                None => estimate(&fitted.fit, uncertainty, &own),
-                Some(adjusted) => kenward_roger_estimate(&fitted.fit, adjusted, &own),
+                None => estimate(fit, uncertainty, &own),
+                Some(adjusted) => kenward_roger_estimate(fit, adjusted, &own),
             }
         },
+        covariance: &|sums| {
+            let own = sums.select_columns(&fitted.columns);
+            let covariance = adjusted.map_or(&fit.covariance, |own| &own.covariance);
+            &own * covariance * own.transpose()
+        },
+        test: &|sums| {
+            let own = sums.select_columns(&fitted.columns);
+            let test = match adjusted {
+                None => f_test(fit, uncertainty, &own),
+                Some(adjusted) => kenward_roger_f(fit, adjusted, &own),
+            };
+            let test = test.ok()?;
+            Some(JointTest {
+                f: test.f,
+                df: test.numerator,
+                df_denominator: test.denominator,
+                p: test.p,
+            })
+        },
     };
-    means_of(&model, &request.means, request.adjust, request.confidence)
+    means_of(&model, &request.after, request.confidence)
 }
 
 fn mixed(error: windfall_statistics::mixed::error::MixedError) -> Error {
@@ -441,6 +468,7 @@ fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
 
 fn predictions(
     request: &RegressRequest,
+    response: Option<&Node>,
     fitted: &Fitted,
     uncertainty: &VarianceUncertainty,
 ) -> Result<Vec<MixedPredictionOutcome>, Error> {
@@ -457,6 +485,15 @@ fn predictions(
     let found = found.map_err(mixed)?;
     let shown = found.iter().zip(&asked.lines);
     Ok(shown
-        .map(|(&prediction, &line)| MixedPredictionOutcome { line, prediction })
+        .map(|(&prediction, &line)| MixedPredictionOutcome {
+            line,
+            prediction,
+            original: original_prediction(
+                response,
+                prediction.predicted,
+                (prediction.mean_low, prediction.mean_high),
+                (prediction.low, prediction.high),
+            ),
+        })
         .collect())
 }

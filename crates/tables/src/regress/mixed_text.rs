@@ -1,7 +1,8 @@
 //! A mixed model as text and CSV.
 
-use crate::regress::means::{csv_of_means, means_text};
+use crate::regress::means::text::{csv_of_means, means_text};
 use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
+use crate::regress::outcome::{original_cell, original_text};
 use crate::regress::text::csv_of_terms;
 use crate::rows::rows_text;
 use windfall_files::error::Error;
@@ -50,7 +51,7 @@ const PREDICTIONS: [Column<MixedPredictionOutcome>; 8] = [
     ("to ", |row| number(row.prediction.high)),
 ];
 
-const PREDICTIONS_CSV: [Column<MixedPredictionOutcome>; 8] = [
+const PREDICTIONS_CSV: [Column<MixedPredictionOutcome>; 13] = [
     ("line", |row| row.line.to_string()),
     ("population", |row| row.prediction.population.to_string()),
     ("predicted", |row| row.prediction.predicted.to_string()),
@@ -59,6 +60,21 @@ const PREDICTIONS_CSV: [Column<MixedPredictionOutcome>; 8] = [
     ("mean_high", |row| row.prediction.mean_high.to_string()),
     ("low", |row| row.prediction.low.to_string()),
     ("high", |row| row.prediction.high.to_string()),
+    ("original", |row| {
+        original_cell(row.original.as_ref(), |own| own.predicted)
+    }),
+    ("original_mean_low", |row| {
+        original_cell(row.original.as_ref(), |own| own.mean_low)
+    }),
+    ("original_mean_high", |row| {
+        original_cell(row.original.as_ref(), |own| own.mean_high)
+    }),
+    ("original_low", |row| {
+        original_cell(row.original.as_ref(), |own| own.low)
+    }),
+    ("original_high", |row| {
+        original_cell(row.original.as_ref(), |own| own.high)
+    }),
 ];
 
 /// A mixed model as text.
@@ -101,6 +117,11 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
     if !outcome.predictions.is_empty() {
         let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
         text += &format!("\n{table}\n");
+        let original = outcome.predictions.iter();
+        let original: Vec<_> = original
+            .filter_map(|own| Some((own.line, own.original?)))
+            .collect();
+        text += &original_text(&original);
     }
     text + &findings_list(&outcome.findings)
 }

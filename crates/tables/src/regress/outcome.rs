@@ -1,9 +1,13 @@
 //! Fitted linear models as JSON shows them.
 
 use serde::Serialize;
+use windfall_files::text::columns::{Column, text_of_rows};
+use windfall_files::text::statistic::number;
 use windfall_statistics::model::expression::columns_of;
 use windfall_statistics::model::formula::Formula;
+use windfall_statistics::model::formula_syntax::Node;
 use windfall_statistics::model::linear_model::Prediction;
+use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::residuals::diagnostics::RowInfluence;
 use windfall_statistics::table::Table;
 
@@ -75,6 +79,79 @@ pub struct PredictionOutcome {
     /// Mean and intervals.
     #[serde(flatten)]
     pub prediction: Prediction,
+    /// The same on the scale of the column that the response is a function of.
+    pub original: Option<OriginalPrediction>,
+}
+
+/// A prediction on the scale of the column that the response is a function of. Of a normal
+/// distribution there it is the median; an end that the function never reaches is null.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct OriginalPrediction {
+    /// The prediction.
+    #[schema(value_type = Option<f64>)]
+    pub predicted: f64,
+    /// Lower end of its interval.
+    #[schema(value_type = Option<f64>)]
+    pub mean_low: f64,
+    /// Upper end.
+    #[schema(value_type = Option<f64>)]
+    pub mean_high: f64,
+    /// Lower end of the interval of one new measurement.
+    #[schema(value_type = Option<f64>)]
+    pub low: f64,
+    /// Upper end.
+    #[schema(value_type = Option<f64>)]
+    pub high: f64,
+}
+
+/// A prediction on the scale of the column below a response; `None` where that is the model's.
+///
+/// * `mean`, `measurement`: their intervals on the scale of the model
+pub(crate) fn original_prediction(
+    response: Option<&Node>,
+    predicted: f64,
+    mean: (f64, f64),
+    measurement: (f64, f64),
+) -> Option<OriginalPrediction> {
+    let scale = OriginalScale::of(response?)?;
+    let (mean_low, mean_high) = scale.interval(mean.0, mean.1);
+    let (low, high) = scale.interval(measurement.0, measurement.1);
+    Some(OriginalPrediction {
+        predicted: scale.value(predicted),
+        mean_low,
+        mean_high,
+        low,
+        high,
+    })
+}
+
+/// Lines of a page for predictions on that scale; empty where there are none.
+///
+/// * `rows`: lines of the file with their predictions
+pub(crate) fn original_text(rows: &[(usize, OriginalPrediction)]) -> String {
+    const COLUMNS: [Column<(usize, OriginalPrediction)>; 6] = [
+        ("line", |row| row.0.to_string()),
+        ("predicted", |row| number(row.1.predicted)),
+        ("median from", |row| number(row.1.mean_low)),
+        ("to", |row| number(row.1.mean_high)),
+        ("observation from", |row| number(row.1.low)),
+        ("to ", |row| number(row.1.high)),
+    ];
+    match rows.is_empty() {
+        true => String::new(),
+        false => format!(
+            "\nThe same on the scale of the column, as medians:\n{}\n",
+            text_of_rows(rows, &COLUMNS, &[])
+        ),
+    }
+}
+
+/// A cell of a value on that scale.
+pub(crate) fn original_cell(
+    original: Option<&OriginalPrediction>,
+    of: fn(&OriginalPrediction) -> f64,
+) -> String {
+    original.map_or_else(String::new, |own| of(own).to_string())
 }
 
 /// Rows with their influence and their lines in the file.

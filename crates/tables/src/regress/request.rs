@@ -3,7 +3,7 @@
 #[cfg(feature = "clap")]
 use crate::option_words::{anova_type, contrast, direction, likelihood};
 use crate::reading::ReadingOptions;
-use crate::regress::means::Adjust;
+use crate::regress::means::request::MeansRequest;
 use std::path::PathBuf;
 
 pub use windfall_statistics::mixed::fit::MixedMethod;
@@ -77,17 +77,9 @@ pub struct RegressRequest {
     /// Contrasts of categories
     #[cfg_attr(feature = "clap", arg(long, default_value = "treatment", value_parser = contrast()))]
     pub contrasts: Contrast,
-    /// Marginal means of a category, or of several ('variety,dose'), with the differences of all
-    /// pairs: over the levels of the other categories in equal parts, at the mean of each column
-    /// of numbers; may be repeated
-    #[cfg_attr(feature = "clap", arg(long = "means", value_name = "COLUMNS"))]
-    pub means: Vec<String>,
-    /// How differences of means allow for their number
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, value_enum, default_value_t, requires = "means")
-    )]
-    pub adjust: Adjust,
+    /// Questions after the model
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub after: MeansRequest,
     /// Standard errors that hold for unequal variances (HC3)
     #[cfg_attr(feature = "clap", arg(long))]
     pub robust: bool,
@@ -139,8 +131,7 @@ impl RegressRequest {
             hierarchy: false,
             anova: AnovaType::Hierarchical,
             contrasts: Contrast::Treatment,
-            means: Vec::new(),
-            adjust: Adjust::Tukey,
+            after: MeansRequest::default(),
             robust: false,
             folds: 10,
             fold_by: None,

@@ -4,14 +4,17 @@ use crate::regress::findings::{
     aliased_findings, code_findings, finding, fit_findings, lack_finding, left_out_finding,
     row_count,
 };
-use crate::regress::means::{MeansOutcome, Model, means_of};
+use crate::regress::means::outcome::MeansOutcome;
+use crate::regress::means::run::{Model, means_of};
 use crate::regress::mixed::{MixedOutcome, regress_mixed};
 use crate::regress::outcome::{
-    PredictionOutcome, RangeOutcome, RowOutcome, StepOutcome, ranges_of, rows_of,
+    PredictionOutcome, RangeOutcome, RowOutcome, StepOutcome, original_prediction, ranges_of,
+    rows_of,
 };
 use crate::regress::request::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::regress::residuals::{ResidualOutcome, residual_findings, residual_tests};
 use crate::rows::RowCount;
+use nalgebra::DMatrix;
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -20,10 +23,11 @@ use windfall_files::table::data::Data;
 use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
-use windfall_statistics::model::formula_syntax::spelling;
+use windfall_statistics::model::formula_syntax::{Node, spelling};
 use windfall_statistics::model::linear_model::{
     LinearFit, Quality, WholeModel, fit_reduced, predict,
 };
+use windfall_statistics::model::mean_contrasts::joint_test;
 use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::model::reduced::{Reduced, reduce};
 use windfall_statistics::model::selection::{Selection, select};
@@ -245,6 +249,8 @@ fn outcome(
     }
     let lack_of_fit = lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df);
     findings.extend(lack_finding(lack_of_fit.as_ref()));
+    let (means, not_estimable) = means(request, data, formula, rows, fit)?;
+    findings.extend(not_estimable);
     let residuals = residual_tests(rows, fit);
     findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {
@@ -276,8 +282,8 @@ fn outcome(
         fold_by: request.fold_by.clone(),
         residuals,
         influence: rows_of(influence, &lines),
-        predictions: predictions(request, rows, fit)?,
-        means: means(request, data, rows, fit)?,
+        predictions: predictions(request, formula.response.as_ref(), rows, fit)?,
+        means,
         findings,
     })
 }
@@ -351,13 +357,12 @@ fn formula_of(formula: &Formula, rows: &ModelRows, selection: &Selection) -> Str
 fn means(
     request: &RegressRequest,
     data: &Data,
+    formula: &Formula,
     rows: &ModelRows,
     fit: &LinearFit,
-) -> Result<Vec<MeansOutcome>, Error> {
-    if request.means.is_empty() {
-        return Ok(Vec::new());
-    }
-    if request.select.is_some() {
+) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
+    let asked = !request.after.means.is_empty() || !request.after.slopes.is_empty();
+    if asked && request.select.is_some() {
         let problem = "means of a model whose terms were selected leave out what the selection \
                        costs: fit the chosen terms without --select";
         return Err(unusable("--means", problem));
@@ -366,18 +371,36 @@ fn means(
         true => robust_covariance_rows(fit, &rows.x),
         false => fit.covariance_rows(),
     };
+    let estimate = |weights: &[f64]| fit.estimate(weights, &covariance);
+    let of_sums = |sums: &DMatrix<f64>| {
+        let own = sums.select_columns(&fit.columns);
+        let size = covariance.len();
+        let inner = DMatrix::from_fn(size, size, |i, j| covariance[i][j]);
+        &own * inner * own.transpose()
+    };
     let model = Model {
         frame: &rows.frame,
         aliased: &fit.aliased,
         table: &data.table,
         kept: &rows.kept,
-        estimate: &|weights| fit.estimate(weights, &covariance),
+        response: formula.response.as_ref(),
+        estimate: &estimate,
+        covariance: &of_sums,
+        test: &|sums| {
+            let values = sums.row_iter().map(|row| {
+                let row: Vec<f64> = row.iter().copied().collect();
+                estimate(&row).value
+            });
+            let values: Vec<f64> = values.collect();
+            joint_test(&values, of_sums(sums), fit.residual_df as f64)
+        },
     };
-    means_of(&model, &request.means, request.adjust, request.confidence)
+    means_of(&model, &request.after, request.confidence)
 }
 
 fn predictions(
     request: &RegressRequest,
+    response: Option<&Node>,
     rows: &ModelRows,
     fit: &LinearFit,
 ) -> Result<Vec<PredictionOutcome>, Error> {
@@ -388,6 +411,15 @@ fn predictions(
     let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let found = predict(fit, &x).into_iter().zip(&asked.lines);
     Ok(found
-        .map(|(prediction, &line)| PredictionOutcome { line, prediction })
+        .map(|(prediction, &line)| PredictionOutcome {
+            line,
+            original: original_prediction(
+                response,
+                prediction.mean,
+                (prediction.mean_low, prediction.mean_high),
+                (prediction.low, prediction.high),
+            ),
+            prediction,
+        })
         .collect())
 }

@@ -1,7 +1,7 @@
 //! A linear model as text and CSV.
 
-use crate::regress::means::{csv_of_means, means_text};
-use crate::regress::outcome::{PredictionOutcome, StepOutcome};
+use crate::regress::means::text::{csv_of_means, means_text};
+use crate::regress::outcome::{PredictionOutcome, StepOutcome, original_cell, original_text};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
 use crate::rows::rows_text;
@@ -44,7 +44,7 @@ const PREDICTIONS: [Column<PredictionOutcome>; 7] = [
     ("to ", |row| number(row.prediction.high)),
 ];
 
-const PREDICTIONS_CSV: [Column<PredictionOutcome>; 7] = [
+const PREDICTIONS_CSV: [Column<PredictionOutcome>; 12] = [
     ("line", |row| row.line.to_string()),
     ("predicted", |row| row.prediction.mean.to_string()),
     ("se", |row| row.prediction.se.to_string()),
@@ -52,6 +52,21 @@ const PREDICTIONS_CSV: [Column<PredictionOutcome>; 7] = [
     ("mean_high", |row| row.prediction.mean_high.to_string()),
     ("low", |row| row.prediction.low.to_string()),
     ("high", |row| row.prediction.high.to_string()),
+    ("original", |row| {
+        original_cell(row.original.as_ref(), |own| own.predicted)
+    }),
+    ("original_mean_low", |row| {
+        original_cell(row.original.as_ref(), |own| own.mean_low)
+    }),
+    ("original_mean_high", |row| {
+        original_cell(row.original.as_ref(), |own| own.mean_high)
+    }),
+    ("original_low", |row| {
+        original_cell(row.original.as_ref(), |own| own.low)
+    }),
+    ("original_high", |row| {
+        original_cell(row.original.as_ref(), |own| own.high)
+    }),
 ];
 
 /// An analysis of variance as a table: terms, residual with lack of fit, total.
@@ -175,6 +190,11 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     if !outcome.predictions.is_empty() {
         let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
         text += &format!("\n{table}\n");
+        let original = outcome.predictions.iter();
+        let original: Vec<_> = original
+            .filter_map(|own| Some((own.line, own.original?)))
+            .collect();
+        text += &original_text(&original);
     }
     text + &findings_list(&outcome.findings)
 }

@@ -1,0 +1,199 @@
+//! From the scale of a model back to that of what was measured: `log(k)` to `k`.
+
+use crate::model::formula_syntax::{Kind, Node, Operator, spelling};
+
+/// How a transformed response leads back to the column that it was made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OriginalScale {
+    /// The column.
+    pub column: String,
+    /// What was done to it, the last first.
+    steps: Vec<Step>,
+}
+
+/// A calculation that is undone.
+#[derive(Clone, Debug, PartialEq)]
+enum Step {
+    /// Logarithm to a base, of a number plus another.
+    Log { base: f64, shift: f64 },
+    /// Exponential.
+    Exp,
+    /// Positive numbers to a power.
+    Power(f64),
+    /// a + b y
+    Line(f64, f64),
+    /// a / y of positive numbers
+    Inverse(f64),
+}
+
+impl OriginalScale {
+    /// Of a response; `None` where it is a column as it is, or cannot be undone.
+    pub fn of(response: &Node) -> Option<Self> {
+        let mut steps = Vec::new();
+        let column = undo(response, &mut steps)?;
+        (!steps.is_empty()).then_some(Self { column, steps })
+    }
+
+    /// A value on the scale of the column; NaN for one that no value of the column leads to.
+    pub fn value(&self, transformed: f64) -> f64 {
+        self.steps
+            .iter()
+            .fold(transformed, |own, step| step.undone(own))
+    }
+
+    /// An interval there, its lower end first.
+    pub fn interval(&self, low: f64, high: f64) -> (f64, f64) {
+        let (low, high) = (self.value(low), self.value(high));
+        match low > high {
+            true => (high, low),
+            false => (low, high),
+        }
+    }
+
+    /// Whether the response is a logarithm of the column, so that differences are ratios.
+    pub fn is_logarithm(&self) -> bool {
+        matches!(self.steps[..], [Step::Log { shift: 0.0, .. }])
+    }
+}
+
+impl Step {
+    fn undone(&self, value: f64) -> f64 {
+        match *self {
+            Self::Log { base, shift } => match base == std::f64::consts::E {
+                true if shift == 1.0 => value.exp_m1(),
+                true => value.exp() - shift,
+                false => base.powf(value) - shift,
+            },
+            Self::Exp => value.ln(),
+            // An interval that reaches below zero ends at zero.
+            Self::Power(power) => value.max(0.0).powf(power.recip()),
+            Self::Line(start, slope) => (value - start) / slope,
+            Self::Inverse(above) => match value / above > 0.0 {
+                true => above / value,
+                false => f64::INFINITY,
+            },
+        }
+    }
+}
+
+/// The column below, with what undoes the calculations on the way.
+fn undo(node: &Node, steps: &mut Vec<Step>) -> Option<String> {
+    let (step, inner) = match &node.kind {
+        Kind::Name(name) => return Some(name.clone()),
+        Kind::Negative(inner) => (Step::Line(0.0, -1.0), inner.as_ref()),
+        Kind::Call(function, arguments) => {
+            let [argument] = &arguments[..] else {
+                return None;
+            };
+            let log = |base: f64| Step::Log { base, shift: 0.0 };
+            let step = match function.as_str() {
+                "I" => return undo(&argument.value, steps),
+                "log" => log(std::f64::consts::E),
+                "log2" => log(2.0),
+                "log10" => log(10.0),
+                "log1p" => Step::Log {
+                    base: std::f64::consts::E,
+                    shift: 1.0,
+                },
+                "exp" => Step::Exp,
+                "sqrt" => Step::Power(0.5),
+                _ => return None,
+            };
+            (step, &argument.value)
+        }
+        Kind::Binary(operator, left, right) => match (constant(left), constant(right)) {
+            (None, Some(number)) => {
+                let step = match operator {
+                    Operator::Plus => Step::Line(number, 1.0),
+                    Operator::Minus => Step::Line(-number, 1.0),
+                    Operator::Star if number != 0.0 => Step::Line(0.0, number),
+                    Operator::Slash => Step::Line(0.0, number.recip()),
+                    Operator::Power if number != 0.0 => Step::Power(number),
+                    _ => return None,
+                };
+                (step, left.as_ref())
+            }
+            (Some(number), None) => {
+                let step = match operator {
+                    Operator::Plus => Step::Line(number, 1.0),
+                    Operator::Minus => Step::Line(number, -1.0),
+                    Operator::Star if number != 0.0 => Step::Line(0.0, number),
+                    Operator::Slash if number != 0.0 => Step::Inverse(number),
+                    _ => return None,
+                };
+                (step, right.as_ref())
+            }
+            _ => return None,
+        },
+        _ => return None,
+    };
+    steps.push(step);
+    undo(inner, steps)
+}
+
+/// The value of a number, also of a negative one, or of numbers in a calculation.
+fn constant(node: &Node) -> Option<f64> {
+    match &node.kind {
+        Kind::Number(number) => Some(*number),
+        Kind::Negative(inner) => Some(-constant(inner)?),
+        Kind::Binary(Operator::Slash, left, right) => Some(constant(left)? / constant(right)?),
+        _ => None,
+    }
+}
+
+/// What a mean of transformed values is on the scale of the column.
+pub fn meaning(scale: &OriginalScale, response: &Node) -> String {
+    let (column, response) = (&scale.column, spelling(response));
+    match scale.is_logarithm() {
+        true => format!(
+            "{column} of a mean of {response} is the geometric mean of {column}, its median where \
+             {response} is normal, and lies below its mean; differences of {response} are ratios"
+        ),
+        false => format!(
+            "{column} of a mean of {response} is the median of {column} where {response} is \
+             normal, not its mean"
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::formula_syntax::parse;
+
+    #[test]
+    fn closed_form_values_lead_back() {
+        for (text, forward) in [
+            ("log(k)", f64::ln as fn(f64) -> f64),
+            ("log10(k)", f64::log10),
+            ("log2(2 * k)", |k| (2.0 * k).log2()),
+            ("log1p(k)", f64::ln_1p),
+            ("sqrt(k)", f64::sqrt),
+            ("exp(-k)", |k| (-k).exp()),
+            ("k^0.3", |k| k.powf(0.3)),
+            ("I(k^-1)", |k| k.powf(-1.0)),
+            ("(k^0.3 - 1) / 0.3", |k| (k.powf(0.3) - 1.0) / 0.3),
+            ("1 / k", |k| 1.0 / k),
+            ("3 - k / 2", |k| 3.0 - k / 2.0),
+        ] {
+            let scale = OriginalScale::of(&parse(text).unwrap()).unwrap();
+            assert_eq!(scale.column, "k");
+            for k in [0.2, 1.0, 3.7] {
+                let found = scale.value(forward(k));
+                assert!((found - k).abs() < 1e-12 * (1.0 + k), "{text}: {found}");
+            }
+        }
+        for text in ["k", "k + v", "k * v", "abs(k)", "sin(k)", "2"] {
+            assert_eq!(OriginalScale::of(&parse(text).unwrap()), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn closed_form_intervals_stay_in_order_and_in_range() {
+        let scale = |text: &str| OriginalScale::of(&parse(text).unwrap()).unwrap();
+        assert_eq!(scale("1 / k").interval(0.5, 2.0), (0.5, 2.0));
+        assert_eq!(scale("1 / k").interval(-0.5, 2.0), (0.5, f64::INFINITY));
+        assert_eq!(scale("sqrt(k)").interval(-0.5, 2.0), (0.0, 4.0));
+        assert!(scale("log10(k)").is_logarithm() && !scale("log1p(k)").is_logarithm());
+    }
+}
