@@ -68,19 +68,25 @@ check_means <- function(group, table, formula, of, within = NULL, which = "pairs
   expected <- c(ifelse(sign > 0, theirs$lower.CL[place], -theirs$upper.CL[place]), ifelse(sign > 0, theirs$upper.CL[place], -theirs$lower.CL[place]))
   if (adjust == "mvt") {
     # emmeans asks mvtnorm for three digits; here it is asked for six. Its degrees of freedom are
-    # whole: between two of them by their inverse.
+    # whole: between two of them by their inverse. Where its own error is above 1e-4, that is the limit.
     all <- do.call(contrast, arguments)
     known <- !is.na(as.data.frame(all)$estimate)
     block <- if (is.null(within)) rep(1, nrow(theirs)) else key_of(theirs, within)
     correlation <- cov2cor(vcov(all)[known, known])
     upper <- function(t, df, corr) {
-      at <- function(df) { set.seed(1); 1 - mvtnorm::pmvt(rep(-t, nrow(corr)), rep(t, nrow(corr)), df = df, corr = corr, algorithm = mvtnorm::GenzBretz(maxpts = 1e6, abseps = 1e-5))[1] }
+      at <- function(df) {
+        set.seed(1)
+        found <- mvtnorm::pmvt(rep(-t, nrow(corr)), rep(t, nrow(corr)), df = df, corr = corr, algorithm = mvtnorm::GenzBretz(maxpts = 1e6, abseps = 1e-5))
+        error <<- max(error, attr(found, "error"))
+        1 - found[1]
+      }
       low <- floor(df + 1e-6)
       if (abs(df - low) < 1e-6) return(at(low))
       part <- (1 / df - 1 / low) / (1 / (low + 1) - 1 / low)
       (1 - part) * at(low) + part * at(low + 1)
     }
     p <- critical <- numeric(nrow(theirs))
+    error <- 0
     tried <- seq_len(min(nrow(theirs), 6))
     for (row in tried) {
       own <- which(block == block[row])
@@ -90,8 +96,8 @@ check_means <- function(group, table, formula, of, within = NULL, which = "pairs
       reach <- (differences$high[mine] - differences$difference[mine]) / differences$se[mine]
       critical[row] <- upper(reach, theirs$df[row], corr)
     }
-    compare(group, "p of differences", 1 + differences$p[match(tried, place)], 1 + p[tried], 1e-4)
-    compare(group, "interval of differences", 1 + critical[tried], rep(1.05, length(tried)), 1e-4)
+    compare(group, "p of differences", 1 + differences$p[match(tried, place)], 1 + p[tried], max(1e-4, error))
+    compare(group, "interval of differences", 1 + critical[tried], rep(1.05, length(tried)), max(1e-4, error))
   } else if (adjust == "tukey") {
     # R's ptukey is off by up to 1e-5, where windfall's agrees with SciPy's to 1e-10.
     compare(group, "p of differences", 1 + differences$p, 1 + theirs$p.value[place], 1e-5)
