@@ -262,3 +262,44 @@ fn reference_nist_analysis_of_variance_through_both_commands() {
         }
     }
 }
+
+/// A polynomial of degree ten, whose powers depend on each other to the last digit of doubles.
+#[test]
+fn reference_nist_polynomial_of_degree_ten_through_regress() {
+    let file = windfall_test_data::find("nist/Filip.dat").unwrap();
+    let text = std::fs::read_to_string(file).unwrap();
+    let words =
+        |line: &str| -> Vec<String> { line.split_whitespace().map(str::to_owned).collect() };
+    let lines: Vec<Vec<String>> = text.lines().map(words).collect();
+    let data = lines
+        .iter()
+        .rposition(|own| own.first().is_some_and(|word| word == "Data:"));
+    let mut table = "y,x\n".to_owned();
+    for own in &lines[data.unwrap() + 1..] {
+        if let [y, x] = &own[..] {
+            table += &format!("{y},{x}\n");
+        }
+    }
+    let powers: Vec<String> = (1..=10).map(|power| format!("x^{power}")).collect();
+    let terms = powers.join(" + ");
+    let arguments = format!("regress~t.csv~--response~y~--terms~{terms}~--folds~0");
+    let found = json(&table, &arguments);
+    let close = |found: &Value, certified: &str| {
+        let (found, certified) = (found.as_f64().unwrap(), certified.parse::<f64>().unwrap());
+        let digits = -(found / certified - 1.0).abs().max(1e-16).log10();
+        assert!(digits > 9.0, "{found} {certified}");
+    };
+    let mut known = 0;
+    for own in &lines {
+        let power = own.first().and_then(|own| own.strip_prefix('B'));
+        if let (Some(power), [_, estimate, se]) = (power, &own[..]) {
+            let term = &found["terms"][power.parse::<usize>().unwrap()];
+            close(&term["estimate"], estimate);
+            close(&term["se"], se);
+            known += 1;
+        }
+    }
+    assert_eq!(known, 11);
+    close(&found["residual"]["ss"], "0.795851382172941E-03");
+    close(&found["model"]["f"], "2162.43954511489");
+}

@@ -7,6 +7,7 @@ pub mod expression;
 pub mod formula;
 pub mod formula_syntax;
 pub mod linear_model;
+pub mod lost_digits;
 pub mod marginal_means;
 pub mod mean_contrasts;
 pub mod model_frame;

@@ -5,6 +5,8 @@ use crate::model::contrast::Contrast;
 use crate::model::encoding::{Coding, Encoding, encoding};
 use crate::model::expression::{columns_of, values};
 use crate::model::formula::{Formula, Term, term_name};
+use crate::model::lost_digits::{LostDigits, lost_digits};
+use crate::model::reduced::is_ordinary;
 use crate::table::{Cells, Table};
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -40,6 +42,10 @@ pub struct ModelRows {
     pub frame: ModelFrame,
     /// Model matrix: rows without missing cells, in the order of the table.
     pub x: DMatrix<f64>,
+    /// What rounding took from it; of so few rows that [`reduce_written`] uses it.
+    ///
+    /// [`reduce_written`]: crate::model::reduced::reduce_written
+    pub lost: LostDigits,
     /// The response in these rows; empty if there is none.
     pub y: Vec<f64>,
     /// Rows of the table that are here, from 0.
@@ -81,13 +87,29 @@ pub fn model_rows(
         .map_err(told)?;
     let frame = frame_of(formula, atoms);
     let x = matrix(&frame, table).map_err(told)?;
+    let lost = match is_ordinary(&x) {
+        true => lost(&frame, table, &x),
+        false => Vec::new(),
+    };
     Ok(ModelRows {
         frame,
         x,
+        lost,
         y,
         kept,
         left_out,
     })
+}
+
+/// What rounding took from the columns of a model matrix.
+fn lost(frame: &ModelFrame, table: &Table, x: &DMatrix<f64>) -> LostDigits {
+    let lost = frame.terms.iter().filter_map(|term| {
+        let (column, rows) = (term.columns.start, x.nrows());
+        let atoms = term.atoms.iter().map(|(atom, _)| &frame.atoms[*atom]);
+        let rounded = x.as_slice().get(column * rows..(column + 1) * rows)?;
+        Some((column, lost_digits(atoms, table, rounded)?))
+    });
+    lost.collect()
 }
 
 /// Model matrix of other rows; errors as in [`model_rows`], and for new levels.

@@ -60,23 +60,39 @@ pub struct Aliased {
     pub combination: Vec<(usize, f64)>,
 }
 
+/// Whether a model matrix is reduced in twice the precision of doubles.
+pub fn is_ordinary(x: &DMatrix<f64>) -> bool {
+    x.nrows() * (x.ncols() + 1) * (x.ncols() + 1) <= ORDINARY
+}
+
 /// Reduces rows to their triangle.
 ///
 /// * `x`: model matrix, finite
 /// * `y`: response, as many
 pub fn reduce(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
-    let columns = x.ncols();
-    match x.nrows() * (columns + 1) * (columns + 1) <= ORDINARY {
-        true => reduce_precisely(x, y),
+    reduce_written(x, &[], y)
+}
+
+/// [`reduce`] of columns as they are written.
+///
+/// * `lost`: columns with what rounding to doubles took from each row
+pub fn reduce_written(x: &DMatrix<f64>, lost: &[(usize, Vec<f64>)], y: &[f64]) -> Reduced {
+    match is_ordinary(x) {
+        true => reduce_precisely(x, lost, y),
         false => reduce_in_blocks(x, y),
     }
 }
 
-fn reduce_precisely(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
+fn reduce_precisely(x: &DMatrix<f64>, lost: &[(usize, Vec<f64>)], y: &[f64]) -> Reduced {
     let mut columns: Vec<Vec<DoubleDouble>> = x
         .column_iter()
         .map(|column| column.iter().map(|v| DoubleDouble::from(*v)).collect())
         .collect();
+    for (column, lost) in lost {
+        for (own, lost) in columns[*column].iter_mut().zip(lost) {
+            *own += DoubleDouble::from(*lost);
+        }
+    }
     columns.push(y.iter().map(|v| as_written(*v)).collect());
     let count = x.ncols();
     for step in 0..count.min(x.nrows()) {
@@ -353,7 +369,7 @@ mod tests {
     fn conserves_the_solution_in_blocks() {
         let (x, y) = wave(5000, 7);
         let wanted: Vec<usize> = (0..7).collect();
-        let precise = reduce_precisely(&x, &y).solve(&wanted);
+        let precise = reduce_precisely(&x, &[], &y).solve(&wanted);
         let blocks = reduce_in_blocks(&x, &y).solve(&wanted);
         for (a, b) in precise.estimates.iter().zip(&blocks.estimates) {
             assert!((a.value() - b.value()).abs() < 1e-13);

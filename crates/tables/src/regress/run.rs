@@ -29,7 +29,7 @@ use windfall_statistics::model::linear_model::{
 };
 use windfall_statistics::model::mean_contrasts::joint_test;
 use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
-use windfall_statistics::model::reduced::{Reduced, reduce};
+use windfall_statistics::model::reduced::{Reduced, reduce_written};
 use windfall_statistics::model::selection::{Selection, select};
 use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, cross_validate};
 use windfall_statistics::residuals::diagnostics::{
@@ -142,7 +142,7 @@ fn regress_linear(
     let also: Vec<String> = request.fold_by.iter().cloned().collect();
     let rows = model_rows(formula, &data.table, request.contrasts, &also)
         .map_err(|error| data.told(error))?;
-    let reduced = reduce(&rows.x, &rows.y);
+    let reduced = reduce_written(&rows.x, &rows.lost, &rows.y);
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
     let selection = match &request.selection() {
         Some(options) => select(&rows.frame, &reduced, options),
@@ -325,7 +325,7 @@ fn variance_of(
         let also: Vec<String> = request.fold_by.iter().cloned().collect();
         let summed = model_rows(formula, &data.table, Contrast::Sum, &also);
         let summed = summed.map_err(|error| data.told(error))?;
-        let reduced = reduce(&summed.x, &summed.y);
+        let reduced = reduce_written(&summed.x, &summed.lost, &summed.y);
         return Ok(anova(&summed.frame, &reduced, terms, kind).rows);
     }
     Ok(anova(&rows.frame, reduced, terms, kind).rows)
