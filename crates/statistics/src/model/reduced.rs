@@ -60,6 +60,18 @@ pub struct Aliased {
     pub combination: Vec<(usize, f64)>,
 }
 
+impl Aliased {
+    /// Whether a sum of coefficients with these weights of all columns of the model keeps to the
+    /// dependence, so that it can be estimated without this column.
+    pub fn agrees(&self, weights: &[f64]) -> bool {
+        let terms = self.combination.iter();
+        let expected: f64 = terms
+            .map(|(column, factor)| factor * weights[*column])
+            .sum();
+        (weights[self.column] - expected).abs() <= 1e-8
+    }
+}
+
 /// Reduces rows to their triangle.
 ///
 /// * `x`: model matrix, finite

@@ -172,10 +172,9 @@ pub(crate) fn means_of(
 /// one depends.
 fn check_estimable(model: &Model, text: &str, rows: &MarginalRows) -> Result<(), Error> {
     for (levels, row) in rows.groups.iter().zip(rows.rows.row_iter()) {
+        let row: Vec<f64> = row.iter().copied().collect();
         for aliased in model.aliased {
-            let terms = aliased.combination.iter();
-            let expected: f64 = terms.map(|(column, factor)| factor * row[*column]).sum();
-            if (row[aliased.column] - expected).abs() > 1e-8 {
+            if !aliased.agrees(&row) {
                 let problem = format!(
                     "the mean of {} cannot be estimated: it depends on {}, which has no estimate \
                      of its own (no row tells it); ask for fewer categories, or leave out the \
