@@ -18,8 +18,9 @@ const BESIDE: f64 = 58.0;
 /// Height of a line of the notes below the panels; px.
 const NOTE: f64 = 14.0;
 
-/// Width of a character of the names and notes; px.
+/// Width of a character of the names and notes, and of titles; px.
 const CHARACTER: f64 = 5.7;
+const TITLE_CHARACTER: f64 = 6.3;
 
 /// Longest name at an axis; characters.
 const LONGEST_NAME: usize = 22;
@@ -135,7 +136,8 @@ pub fn drawing_of_grid(grid: &Grid) -> Drawing {
                 height,
             };
             let title = (within.left, top + 14.0);
-            drawing.text(title, Anchor::Start, 11.5, &own.title);
+            let most = (step / TITLE_CHARACTER) as usize;
+            drawing.text(title, Anchor::Start, 11.5, &cut(&own.title, most));
             draw_panel(&mut drawing, own, within);
         }
         top += above + legend + height + BELOW;
@@ -242,11 +244,15 @@ fn axis_of(scale: &Scale, (low, high): (f64, f64), ticks: usize, room: f64) -> A
 /// Names cut so that each fits into a width; px.
 fn fitting(names: &[String], width: f64) -> Vec<String> {
     let most = ((width / CHARACTER) as usize).clamp(2, LONGEST_NAME);
-    let cut = |name: &String| match name.chars().count() > most {
-        true => name.chars().take(most - 1).chain(['…']).collect(),
-        false => name.clone(),
-    };
-    names.iter().map(cut).collect()
+    names.iter().map(|name| cut(name, most)).collect()
+}
+
+/// A text of at most so many characters.
+fn cut(text: &str, most: usize) -> String {
+    match text.chars().count() > most {
+        true => text.chars().take(most.max(1) - 1).chain(['…']).collect(),
+        false => text.to_owned(),
+    }
 }
 
 /// A text in lines of at most so many characters, broken between words.

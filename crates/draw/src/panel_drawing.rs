@@ -245,7 +245,7 @@ fn draw_series(
                 drawing.polyline(ends, ink, 2.0);
             }
         }
-        Style::Spots => points.iter().for_each(|at| drawing.spot(*at, 4.0, ink)),
+        Style::Spots => points.iter().for_each(|at| drawing.spot(*at, 3.2, ink)),
         Style::Dots => {
             let (few, many) = labels.dots;
             let radius = if points.len() < FEW_POINTS { few } else { many };

@@ -75,7 +75,10 @@ struct VariableEffect<'a> {
 /// # Errors
 /// A column of the model is not in the table.
 pub fn effects_painting(model: &EffectModel) -> Result<Option<Painting>, Error> {
-    let variables = variables_of(model.frame, model.estimated, model.table)?;
+    // A column without an estimate of its own still says what its term is made of.
+    let aliased = model.aliased.iter().map(|own| own.column);
+    let used: Vec<usize> = model.estimated.iter().copied().chain(aliased).collect();
+    let variables = variables_of(model.frame, &used, model.table)?;
     if variables.is_empty() {
         return Ok(None);
     }
@@ -97,6 +100,12 @@ pub fn effects_painting(model: &EffectModel) -> Result<Option<Painting>, Error> 
         };
         panels.push(panel);
         notes.extend(note);
+    }
+    if panels
+        .iter()
+        .any(|own| own.panel.series.iter().any(has_gap))
+    {
+        notes.push("Where no row tells what the model predicts, nothing is drawn.".to_owned());
     }
     notes.extend(drawn.note);
     if variables.len() > MOST_PANELS {
@@ -130,6 +139,11 @@ pub fn effects_painting(model: &EffectModel) -> Result<Option<Painting>, Error> 
         }),
         csv: csv_text(&header.map(str::to_owned), rows)?,
     }))
+}
+
+/// Whether a value of a series is not known.
+fn has_gap(series: &Series) -> bool {
+    series.points.iter().any(|(_, value)| value.is_nan())
 }
 
 fn effect_of<'a>(

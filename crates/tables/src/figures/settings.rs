@@ -99,19 +99,20 @@ impl Variable {
 
 /// Columns that a model is made of, in the order of its terms.
 ///
-/// * `estimated`: columns of the model with an estimate; terms without any are passed over
+/// * `used`: columns that are in the model; terms without any, which a selection took out, are
+///   passed over
 /// * `table`: rows that the model was fitted to
 ///
 /// # Errors
 /// A column of the model is not in the table.
 pub fn variables_of(
     frame: &ModelFrame,
-    estimated: &[usize],
+    used: &[usize],
     table: &Table,
 ) -> Result<Vec<Variable>, Error> {
     let mut found: Vec<Variable> = Vec::new();
     for term in &frame.terms {
-        if !term.columns.clone().any(|own| estimated.contains(&own)) {
+        if !term.columns.clone().any(|own| used.contains(&own)) {
             continue;
         }
         let atoms = term.atoms.iter().map(|(atom, _)| &frame.atoms[*atom]);

@@ -17,8 +17,9 @@ use windfall_statistics::mixed::profile::{ProfileInterval, Profiles, profile_roo
 use windfall_statistics::mixed::term::RandomTerm;
 use windfall_statistics::residuals::diagnostics::RowInfluence;
 
-/// Size of a panel; px.
+/// Sizes of a panel, and of that of a profile, whose name is long; px.
 const SIZE: (f64, f64) = (196.0, 176.0);
+const PROFILE: (f64, f64) = (290.0, 176.0);
 
 /// Most groups whose names stand at the axis, and height of each; px.
 const MOST_NAMED: usize = 60;
@@ -247,7 +248,7 @@ fn painting(
         caption: notes.join(" "),
         drawing: drawing_of_grid(&Grid {
             title,
-            columns: panels.len().min(3),
+            columns: if size.0 > SIZE.0 { 2 } else { 3 },
             panels,
             size,
             notes,
@@ -364,7 +365,7 @@ fn profiles(own: &MixedShown) -> Result<Painting, Error> {
     painting(
         "profiles",
         "Profiles of standard deviations and correlations".to_owned(),
-        (panels, SIZE),
+        (panels, PROFILE),
         notes,
         csv_text(&header.map(str::to_owned), rows)?,
     )
@@ -417,8 +418,11 @@ fn profile_panel(
         series.push(Series::new("", Style::Upright, ends.collect()).coloured(1));
     }
     series.push(Series::new("", Style::Line, points).coloured(0));
-    let name = &interval.name;
-    let mut panel = Panel::new((name, &unit), ("signed root of the rise", ""), series);
+    let x = match interval.parameter {
+        VarianceParameter::Correlation { .. } => "correlation",
+        _ => "standard deviation",
+    };
+    let mut panel = Panel::new((x, &unit), ("signed root of the rise", ""), series);
     if interval.estimate.is_finite() {
         panel.marks.push(Mark {
             label: String::new(),
@@ -426,7 +430,7 @@ fn profile_panel(
             side: Side::AboveLeft,
         });
     }
-    let mut panel = GridPanel::new("", panel);
+    let mut panel = GridPanel::new(&interval.name, panel);
     panel.empty = "the likelihood tells nothing about it".to_owned();
     panel
 }
