@@ -4,7 +4,7 @@ use crate::axis::{Axis, axis};
 use crate::frame::{Frame, Rectangle};
 use crate::panel::Panel;
 use crate::panel_drawing::{Labels, draw_legend, draw_within, legend_height, range};
-use crate::svg::{Anchor, Drawing};
+use crate::svg::{Anchor, Drawing, Ink};
 
 /// Room around a panel and above all of them; px.
 const RIGHT: f64 = 14.0;
@@ -32,6 +32,7 @@ const LABELS: Labels = Labels {
     line: 10.5,
     ring: 3.6,
     dots: (1.9, 1.2),
+    alike: true,
 };
 
 /// What stands along an axis.
@@ -192,11 +193,27 @@ fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
         return;
     }
     draw_within(drawing, &inside(panel, &frame), &frame, &LABELS);
-    draw_legend(drawing, panel, &frame, &LABELS);
+    draw_legend(
+        drawing,
+        &with_short_labels(panel, within.width),
+        &frame,
+        &LABELS,
+    );
     for (at, text) in &own.texts {
         let (x, y) = frame.place(*at);
-        drawing.text((x, y + 3.6), Anchor::Middle, 10.5, text);
+        drawing.text_over((x, y + 3.6), (Anchor::Middle, 10.5), text, Ink::Background);
     }
+}
+
+/// The panel with labels of its legend that end within a width; px.
+fn with_short_labels(panel: &Panel, width: f64) -> Panel {
+    let most = ((width - 24.0) / LABELS.character) as usize;
+    let mut panel = panel.clone();
+    for series in &mut panel.series {
+        series.label = cut(&series.label, most);
+        series.points.clear();
+    }
+    panel
 }
 
 /// The panel without what lies beyond its frame.

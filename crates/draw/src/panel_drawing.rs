@@ -29,6 +29,8 @@ pub(crate) struct Labels {
     pub ring: f64,
     /// Radius of dots: of few, and of many.
     pub dots: (f64, f64),
+    /// Whether dots of all series are as large as those of the longest.
+    pub alike: bool,
 }
 
 fn labelled(panel: &Panel) -> Vec<(usize, &Series)> {
@@ -90,6 +92,13 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
         Style::Dots => 3,
         Style::Spots | Style::ThickBars | Style::LevelThickBars => 4,
         _ => 2,
+    };
+    let dots = panel.series.iter().filter(|own| own.style == Style::Dots);
+    let longest = dots.map(|own| own.points.len()).max().unwrap_or(0);
+    let many = (labels.alike && longest >= FEW_POINTS).then_some(labels.dots.1);
+    let labels = &Labels {
+        dots: (many.unwrap_or(labels.dots.0), labels.dots.1),
+        ..*labels
     };
     for drawn in 0..=4 {
         let series = panel.series.iter().enumerate();

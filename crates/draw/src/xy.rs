@@ -24,6 +24,7 @@ const LABELS: Labels = Labels {
     line: 12.0,
     ring: 4.5,
     dots: (2.3, 1.5),
+    alike: false,
 };
 
 /// A figure of one or more panels, one below the other.

@@ -22,8 +22,9 @@ const SIZE: (f64, f64) = (196.0, 176.0);
 /// Points along a line.
 const POINTS: usize = 41;
 
-/// Most variables that have a panel.
+/// Most variables that have a panel, and most levels that are named in one.
 const MOST_PANELS: usize = 12;
+const MOST_NAMED: usize = 12;
 
 /// What effects are drawn of.
 pub struct EffectModel<'a> {
@@ -106,6 +107,16 @@ pub fn effects_painting(model: &EffectModel) -> Result<Option<Painting>, Error> 
         .any(|own| own.panel.series.iter().any(has_gap))
     {
         notes.push("Where no row tells what the model predicts, nothing is drawn.".to_owned());
+    }
+    let many = |own: &Variable| {
+        own.levels
+            .as_ref()
+            .is_some_and(|own| own.len() > MOST_NAMED)
+    };
+    if variables.iter().any(many) {
+        notes.push(format!(
+            "Partial residuals of more than {MOST_NAMED} levels are in the table alone."
+        ));
     }
     notes.extend(drawn.note);
     if variables.len() > MOST_PANELS {
@@ -220,6 +231,18 @@ fn effect_of<'a>(
         let name = &variables[partner].column;
         note = Some(format!("{left} more levels of {name} have no line."));
     }
+    if let Some(others) = variable
+        .partners
+        .get(1..)
+        .filter(|others| !others.is_empty())
+    {
+        let told = format!(
+            "The effect of {} depends on {} too, and is averaged over it.",
+            variable.column,
+            others.join(", ")
+        );
+        note = Some(note.map_or(told.clone(), |note| format!("{note} {told}")));
+    }
     let found = VariableEffect {
         variable,
         partner: partner.map(|own| &variables[own]),
@@ -255,6 +278,12 @@ fn panel_of(model: &EffectModel, own: &VariableEffect) -> GridPanel {
         column_title(model.response),
     );
     let category = own.variable.levels.is_some();
+    let named = own.variable.levels.as_ref();
+    let named = named.is_some_and(|levels| levels.len() <= MOST_NAMED);
+    let (bar, mean) = match named {
+        true => (Style::ThickBars, Style::Spots),
+        false => (Style::Bars, Style::Dots),
+    };
     let count = own.lines.len();
     // Points of several lines stand beside each other.
     let shift = |line: usize| match category {
@@ -273,7 +302,10 @@ fn panel_of(model: &EffectModel, own: &VariableEffect) -> GridPanel {
             let at = own.variable.values[*row] + shift(line) + width * aside(n);
             (at, *value)
         });
-        series.push(Series::new("", Style::Dots, dots.collect()).coloured(line));
+        // Points would hide the means of many levels.
+        if named || !category {
+            series.push(Series::new("", Style::Dots, dots.collect()).coloured(line));
+        }
     }
     for (line, (at, effects)) in own.lines.iter().enumerate() {
         let label = own.partner.map_or_else(String::new, |partner| {
@@ -288,8 +320,8 @@ fn panel_of(model: &EffectModel, own: &VariableEffect) -> GridPanel {
         if category {
             let bars = effects.iter().filter(|own| own.low.is_finite());
             let bars = bars.flat_map(|own| [(place(own), own.low), (place(own), own.high)]);
-            series.push(Series::new("", Style::ThickBars, bars.collect()).coloured(line));
-            series.push(Series::new(label, Style::Spots, values.collect()).coloured(line));
+            series.push(Series::new("", bar, bars.collect()).coloured(line));
+            series.push(Series::new(label, mean, values.collect()).coloured(line));
             continue;
         }
         if whole {
@@ -300,9 +332,13 @@ fn panel_of(model: &EffectModel, own: &VariableEffect) -> GridPanel {
         }
         series.push(Series::new(label, Style::Line, values.collect()).coloured(line));
     }
-    let panel = Panel::new((&x, &x_unit), (&y, &y_unit), series);
+    let across = match named || !category {
+        true => x.clone(),
+        false => format!("{x}, levels in their order from 0"),
+    };
+    let panel = Panel::new((&across, &x_unit), (&y, &y_unit), series);
     let mut panel = GridPanel::new(x, panel);
-    if let Some(levels) = &own.variable.levels {
+    if let (Some(levels), true) = (&own.variable.levels, named) {
         panel.across = Scale::Names(levels.clone());
     }
     panel.empty = "no row tells what the model predicts here".to_owned();

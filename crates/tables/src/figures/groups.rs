@@ -117,9 +117,12 @@ pub fn draw_groups(own: &GroupPlot) -> DrawnGroups {
         ));
     }
     if let Some((column, _)) = &own.specimens {
-        notes.push(match own.joined {
-            true => format!("Thin lines join the means of one {column}."),
-            false => format!("Points of one {column} stand above each other, on a line."),
+        notes.extend(match own.joined {
+            true => Some(format!("Thin lines join the means of one {column}.")),
+            false => drawn
+                .iter()
+                .any(|points| has_repeats(points))
+                .then(|| format!("Points of one {column} stand above each other, on a line.")),
         });
     }
     if shown.iter().any(|group| !group.letters.is_empty()) {
@@ -140,6 +143,13 @@ pub fn draw_groups(own: &GroupPlot) -> DrawnGroups {
         notes,
         rows: rows_of(own, shown, &drawn),
     }
+}
+
+/// Whether a specimen has several points.
+fn has_repeats(points: &[GroupPoint]) -> bool {
+    let mut known: Vec<usize> = points.iter().filter_map(|own| own.specimen).collect();
+    known.sort_unstable();
+    known.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// Ends of the values with room for letters above them.
