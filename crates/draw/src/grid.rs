@@ -33,6 +33,7 @@ const LABELS: Labels = Labels {
     ring: 3.6,
     dots: (1.9, 1.2),
     alike: true,
+    whole: true,
 };
 
 /// What stands along an axis.

@@ -31,6 +31,8 @@ pub(crate) struct Labels {
     pub dots: (f64, f64),
     /// Whether dots of all series are as large as those of the longest.
     pub alike: bool,
+    /// Whether all points are drawn but those of lines: the caller has thinned them.
+    pub whole: bool,
 }
 
 fn labelled(panel: &Panel) -> Vec<(usize, &Series)> {
@@ -104,7 +106,7 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
         let series = panel.series.iter().enumerate();
         for (index, series) in series.filter(|(_, s)| layer(s) == drawn) {
             let index = series.colour.unwrap_or(index);
-            let points: Vec<(f64, f64)> = thinned(series)
+            let points: Vec<(f64, f64)> = thinned(series, labels.whole)
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
                 .map(|point| frame.place(point))
                 .collect();
@@ -266,12 +268,16 @@ fn draw_series(
 }
 
 /// Every point, or so many that the eye sees no difference: of a line the lowest
-/// and the highest of each stretch, so that no peak is lost.
-fn thinned(series: &Series) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
+/// and the highest of each stretch, so that no peak is lost; pairs stay together.
+fn thinned(series: &Series, whole: bool) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
     let points = &series.points;
     let step = points.len().div_ceil(MOST_POINTS).max(1);
     match series.style {
         Style::Line if step > 1 => Box::new(points.chunks(2 * step).flat_map(extremes)),
+        _ if whole || step == 1 => Box::new(points.iter().copied()),
+        style if style.has_ends() && style != Style::Band => {
+            Box::new(points.chunks(2).step_by(step).flatten().copied())
+        }
         _ => Box::new(points.iter().step_by(step).copied()),
     }
 }
@@ -305,8 +311,17 @@ mod tests {
             colour: None,
             points,
         };
-        let drawn: Vec<(f64, f64)> = thinned(&series).collect();
+        let drawn: Vec<(f64, f64)> = thinned(&series, false).collect();
         assert!(drawn.len() <= MOST_POINTS && drawn.contains(&(12_345.0, 9.0)));
         assert!(drawn.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+        // Of bars whole ones are left out, and none where the caller has thinned them.
+        let bars = Series {
+            style: Style::Bars,
+            ..series
+        };
+        let drawn: Vec<(f64, f64)> = thinned(&bars, false).collect();
+        assert!(drawn.len() <= MOST_POINTS);
+        assert!(drawn.chunks(2).all(|own| own[1].0 == own[0].0 + 1.0));
+        assert_eq!(thinned(&bars, true).count(), 20_000);
     }
 }

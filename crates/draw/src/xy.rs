@@ -25,6 +25,7 @@ const LABELS: Labels = Labels {
     ring: 4.5,
     dots: (2.3, 1.5),
     alike: false,
+    whole: false,
 };
 
 /// A figure of one or more panels, one below the other.

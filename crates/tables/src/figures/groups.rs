@@ -260,7 +260,7 @@ fn specimens(own: &GroupPlot) -> usize {
     own.specimens.as_ref().map_or(1, |(_, names)| names.len())
 }
 
-/// Place of one of several from left to right, nearer to each other where lines join them.
+/// Place of one of several from left to right.
 fn spread(place: usize, count: usize) -> f64 {
     HALF * (2.0 * (place as f64 + 0.5) / count.max(1) as f64 - 1.0)
 }

@@ -59,16 +59,12 @@ pub fn largest(count: usize, most: usize, measure: &dyn Fn(usize) -> f64) -> Vec
     values.into_iter().map(|(_, row)| row).collect()
 }
 
-/// Where the n-th of several points stands beside the middle of its group, from -1 to 1: the
-/// van der Corput sequence, which fills the width evenly and is the same every time.
+/// Where the n-th of several points stands beside the middle of its group, from -1 to 1:
+/// multiples of the golden section, which fill the width evenly, follow no period of the rows,
+/// and are the same every time.
 pub fn aside(n: usize) -> f64 {
-    let (mut left, mut part, mut place) = (n + 1, 0.5, 0.0);
-    while left > 0 {
-        place += part * (left % 2) as f64;
-        left /= 2;
-        part *= 0.5;
-    }
-    2.0 * place - 1.0
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    2.0 * ((n as f64 + 0.5) * GOLDEN).fract() - 1.0
 }
 
 #[cfg(test)]
@@ -88,7 +84,11 @@ mod tests {
 
     #[test]
     fn closed_form_places_aside() {
-        let places: Vec<f64> = (0..5).map(aside).collect();
-        assert_eq!(places, [0.0, -0.5, 0.5, -0.75, 0.25]);
+        // (√5 - 1)/2 - 1, and three times its half less 1.
+        assert!((aside(0) + 0.381_966_011).abs() < 1e-9);
+        assert!((aside(1) - 0.854_101_966).abs() < 1e-9);
+        let mut places: Vec<f64> = (0..100).map(aside).collect();
+        places.sort_by(f64::total_cmp);
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 0.04));
     }
 }
