@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub mod design;
+pub mod figures;
 #[cfg(feature = "clap")]
 mod option_words;
 pub mod reading;

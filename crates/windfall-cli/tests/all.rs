@@ -39,6 +39,7 @@ mod serve;
 mod several_contacts;
 mod stopped_runs;
 mod surface_blocks;
+mod table_figures;
 mod tables;
 mod user_laws;
 mod velocities;

@@ -84,6 +84,24 @@ pub fn profile_variances(
     })
 }
 
+/// Signed roots of what -2 log (restricted) likelihood, minimised over all other parameters,
+/// rises by where one parameter is held at `values`: below the estimate negative. NaN where the
+/// model cannot be fitted with the value.
+///
+/// # Source
+/// Bates et al. (2015), J. Stat. Softw. 67(1), sec. 5.1 (ζ of a profile).
+pub fn profile_roots(fit: &MixedFit, own: &ProfileInterval, values: &[f64]) -> Vec<f64> {
+    let constrained = Constrained::of(fit, own.parameter);
+    let root = |value: &f64| {
+        let rise = constrained.minimum(*value)? - fit.criterion;
+        Some(rise.max(0.0).sqrt().copysign(value - own.estimate))
+    };
+    let roots = values
+        .par_iter()
+        .map(|value| root(value).unwrap_or(f64::NAN));
+    roots.collect()
+}
+
 /// All standard deviations and correlations, in the order of lme4.
 fn parameters_of(fit: &MixedFit) -> Vec<VarianceParameter> {
     let mut parameters = Vec::new();

@@ -60,6 +60,21 @@ pub struct Aliased {
     pub combination: Vec<(usize, f64)>,
 }
 
+impl Aliased {
+    /// Whether a sum of coefficients with these weights of all columns of the model keeps to the
+    /// dependence, so that it can be estimated without this column.
+    pub fn agrees(&self, weights: &[f64]) -> bool {
+        let terms = self.combination.iter();
+        let expected: f64 = terms
+            .map(|(column, factor)| factor * weights[*column])
+            .sum();
+        let size = weights
+            .iter()
+            .fold(1.0, |most: f64, own| most.max(own.abs()));
+        (weights[self.column] - expected).abs() <= 1e-8 * size
+    }
+}
+
 /// Whether a model matrix is reduced in twice the precision of doubles.
 pub fn is_ordinary(x: &DMatrix<f64>) -> bool {
     x.nrows() * (x.ncols() + 1) * (x.ncols() + 1) <= ORDINARY

@@ -6,4 +6,6 @@ pub mod diagnostics;
 pub mod heteroscedasticity;
 pub mod normality;
 pub mod order;
+pub mod quantile_band;
+pub mod smooth;
 pub mod trend;

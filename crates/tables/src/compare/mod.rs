@@ -1,9 +1,12 @@
 //! `windfall compare` and `windfall summary`: groups of a table.
 
 pub mod agreement;
+pub mod agreement_figure;
+mod figures;
 pub mod group_outcome;
 pub mod outcome;
 pub mod pairs;
 pub mod run;
+mod specimens;
 pub mod summary;
 pub mod text;

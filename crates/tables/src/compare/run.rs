@@ -1,8 +1,10 @@
 //! `windfall compare`: groups of a table against each other.
 
+use crate::compare::figures::draw_comparison;
 use crate::compare::group_outcome::{missing_findings, row_count, statistics_error, summaries};
 use crate::compare::outcome::{CompareOutcome, LetteredGroup, PairOutcome, StatisticTest};
 use crate::compare::pairs::{PairMethod, compare_paired, compare_pairs, shared};
+use crate::compare::specimens::{specimen_column, specimen_means};
 use crate::compare::summary::check_confidence;
 #[cfg(feature = "clap")]
 use crate::option_words::trimmed;
@@ -10,10 +12,12 @@ use crate::reading::ReadingOptions;
 use crate::regress::findings::finding;
 use crate::rows::RowCount;
 use std::path::PathBuf;
+use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
+use windfall_files::write_file::check_outputs;
 use windfall_statistics::accurate_sum::mean;
 use windfall_statistics::compare::compact_letters::compact_letters;
 use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
@@ -62,13 +66,13 @@ pub struct CompareRequest {
         arg(long, default_value_t = 0.95, value_name = "LEVEL")
     )]
     pub confidence: f64,
+    /// Groups with every point, or predictions over what was measured
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub figures: Option<FigureFolder>,
     /// How the table is read
     #[cfg_attr(feature = "clap", command(flatten))]
     pub reading: ReadingOptions,
 }
-
-/// Columns whose names say that rows may repeat a specimen.
-const SPECIMEN_COLUMNS: [&str; 5] = ["specimen", "fruit", "sample", "specimen_id", "fruit_id"];
 
 /// Compares groups of a table.
 ///
@@ -77,6 +81,7 @@ const SPECIMEN_COLUMNS: [&str; 5] = ["specimen", "fruit", "sample", "specimen_id
 /// groups, too few values, or no specimen that two groups share.
 pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error> {
     check_confidence(request.confidence)?;
+    check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
     let data = request.reading.read(&request.table)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
     let mut groups =
@@ -118,6 +123,10 @@ pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error>
         }
     }?;
     outcome.count = count;
+    if let Some(folder) = &request.figures {
+        let specimen = request.paired.as_deref().or(request.specimen.as_deref());
+        draw_comparison(folder, &data, &groups, specimen, &outcome)?;
+    }
     Ok(outcome)
 }
 
@@ -242,50 +251,6 @@ fn paired_outcome(
     })
 }
 
-/// Mean of each specimen in each group, in the order of their names.
-fn specimen_means(
-    data: &Data,
-    groups: &Groups,
-    column: &str,
-) -> Result<Vec<Vec<(String, f64)>>, Error> {
-    let names = specimen_names(data, column)?;
-    let of_group = |group: &Group| {
-        let rows = group.rows.iter().zip(&group.values);
-        let mut named: Vec<(String, f64)> = rows
-            .filter_map(|(row, value)| names[*row].clone().map(|name| (name, *value)))
-            .collect();
-        named.sort_by(|a, b| a.0.cmp(&b.0));
-        named
-            .chunk_by(|a, b| a.0 == b.0)
-            .map(|chunk| {
-                let values: Vec<f64> = chunk.iter().map(|(_, value)| *value).collect();
-                (chunk[0].0.clone(), mean(&values).value())
-            })
-            .collect()
-    };
-    Ok(groups.groups.iter().map(of_group).collect())
-}
-
-/// Specimen of each row; `None` where the cell is missing.
-fn specimen_names(data: &Data, column: &str) -> Result<Vec<Option<String>>, Error> {
-    use windfall_statistics::table::Cells;
-    let column = data
-        .table
-        .column(column)
-        .map_err(|error| data.told(error))?;
-    Ok(match &column.cells {
-        Cells::Numbers(numbers) => numbers
-            .iter()
-            .map(|number| (!number.is_nan()).then(|| number.to_string()))
-            .collect(),
-        Cells::Categories(categories) => categories
-            .codes
-            .iter()
-            .map(|code| code.map(|code| categories.levels[code].clone()))
-            .collect(),
-    })
-}
-
 fn averaged_finding(
     groups: &Groups,
     means: &[Vec<(String, f64)>],
@@ -326,18 +291,15 @@ fn partner_finding(means: &[Vec<(String, f64)>], column: &str) -> Option<Finding
 
 /// Rows that look like repeats of one specimen.
 fn repeated_finding(data: &Data, groups: &Groups) -> Result<Option<FindingOutcome>, Error> {
-    let known = |name: &str| SPECIMEN_COLUMNS.contains(&name.to_lowercase().as_str());
-    let mut columns = data.table.columns.iter();
-    let Some(column) = columns.find(|column| known(&column.name)) else {
+    let Some(name) = specimen_column(data) else {
         return Ok(None);
     };
-    let means = specimen_means(data, groups, &column.name)?;
+    let means = specimen_means(data, groups, name)?;
     let rows: usize = groups.groups.iter().map(|group| group.values.len()).sum();
     let within: usize = means.iter().map(Vec::len).sum();
     let mut names: Vec<&String> = means.iter().flatten().map(|(name, _)| name).collect();
     names.sort_unstable();
     names.dedup();
-    let name = &column.name;
     if names.is_empty() {
         return Ok(None);
     }

@@ -1,16 +1,20 @@
 //! `windfall summary`: what the values of a table look like, group by group.
 
+use crate::compare::figures::summary_painting;
 use crate::compare::group_outcome::{missing_findings, row_count, statistics_error, summaries};
 #[cfg(feature = "clap")]
 use crate::option_words::trimmed;
 use crate::reading::ReadingOptions;
+use crate::regress::findings::finding;
 use crate::rows::RowCount;
 use serde::Serialize;
 use std::path::PathBuf;
+use windfall_draw::files::{FigureFolder, write_paintings};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
+use windfall_files::write_file::check_outputs;
 use windfall_statistics::compare::group_summary::{GroupSummary, split_groups};
 use windfall_statistics::table::Cells;
 
@@ -33,10 +37,16 @@ pub struct SummaryRequest {
         arg(long, default_value_t = 0.95, value_name = "LEVEL")
     )]
     pub confidence: f64,
+    /// Histogram of each column, and its groups with every point
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub figures: Option<FigureFolder>,
     /// How the table is read
     #[cfg_attr(feature = "clap", command(flatten))]
     pub reading: ReadingOptions,
 }
+
+/// Most columns that are drawn.
+const MOST_FIGURES: usize = 24;
 
 /// Every group of every value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -69,6 +79,7 @@ pub struct ValueSummary {
 /// The table cannot be read, a column is not there or holds text.
 pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error> {
     check_confidence(request.confidence)?;
+    check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
     let data = request.reading.read(&request.table)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
     let mut outcome = SummaryOutcome {
@@ -77,6 +88,8 @@ pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error
         values: Vec::new(),
         findings: data.left_out_finding().into_iter().collect(),
     };
+    let mut paintings = Vec::new();
+    let mut left: Vec<String> = Vec::new();
     for value in values_of(request, &data)? {
         let groups = split_groups(&data.table, &by, &value).map_err(|error| data.told(error))?;
         let found = missing_findings(&groups, &value, &request.by, &data.lines);
@@ -86,11 +99,36 @@ pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error
                 outcome.findings.push(finding);
             }
         }
+        let described = summaries(&groups.groups, request.confidence)?;
+        match (&request.figures, paintings.len() < MOST_FIGURES) {
+            (None, _) => (),
+            // A column that was named twice has one figure.
+            _ if outcome.values.iter().any(|own| own.value == value) => (),
+            (Some(_), false) => left.push(value.clone()),
+            (Some(_), true) => paintings.push(summary_painting(
+                &data,
+                &groups,
+                (&value, &request.by),
+                &described,
+                request.confidence,
+            )?),
+        }
         outcome.values.push(ValueSummary {
-            groups: summaries(&groups.groups, request.confidence)?,
+            groups: described,
             value,
             count: row_count(&groups),
         });
+    }
+    if !left.is_empty() {
+        let told = format!(
+            "figures are drawn of the first {MOST_FIGURES} columns, not of {}; name them with \
+             --value",
+            left.join(", ")
+        );
+        outcome.findings.push(finding("not-drawn", told));
+    }
+    if let Some(folder) = &request.figures {
+        write_paintings(folder, &paintings)?;
     }
     Ok(outcome)
 }

@@ -1,20 +1,25 @@
 //! `windfall regress` with random effects: a linear mixed model.
 
+use crate::figures::effects::{EffectModel, effects_painting};
 use crate::regress::findings::{
     aliased_findings, code_findings, finding, left_out_finding, row_count,
 };
 use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::means::run::{Model, means_of};
-use crate::regress::outcome::{OriginalPrediction, RangeOutcome, original_prediction, ranges_of};
+use crate::regress::mixed_figures::{MixedShown, mixed_paintings};
+pub use crate::regress::mixed_outcome::{
+    EffectOutcome, MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome,
+};
+use crate::regress::outcome::{original_prediction, ranges_of};
 use crate::regress::request::{FreedomMethod, RegressRequest};
-use crate::rows::RowCount;
-use serde::Serialize;
+use windfall_draw::files::write_paintings;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
-use windfall_statistics::coefficient::Coefficient;
+use windfall_statistics::coefficient::Estimated;
 use windfall_statistics::error::Error as StatisticsError;
+use windfall_statistics::mixed::constraint::VarianceParameter;
 use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
 use windfall_statistics::mixed::inference::{
     FTest, VarianceUncertainty, coefficient_tests, estimate, f_test, picking_contrast,
@@ -23,9 +28,10 @@ use windfall_statistics::mixed::inference::{
 use windfall_statistics::mixed::kenward_roger::{
     KenwardRoger, kenward_roger, kenward_roger_estimate, kenward_roger_f, kenward_roger_tests,
 };
-use windfall_statistics::mixed::predict::{MixedPrediction, NewRows, predict_mixed};
-use windfall_statistics::mixed::profile::profile_variances;
+use windfall_statistics::mixed::predict::{NewRows, predict_mixed};
+use windfall_statistics::mixed::profile::{Profiles, profile_variances};
 use windfall_statistics::mixed::summary::variance_shares;
+use windfall_statistics::mixed::term::RandomTerm;
 use windfall_statistics::model::anova::AnovaRow;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
@@ -36,118 +42,6 @@ use windfall_statistics::model::model_frame::{
 };
 use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
 use windfall_statistics::model::reduced::{Aliased, reduce};
-
-/// A standard deviation between groups, or the correlation of two effects.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct VarianceOutcome {
-    /// Groups: `specimen`; "residual".
-    pub group: String,
-    /// "sd" or "correlation".
-    pub kind: &'static str,
-    /// What varies between the groups.
-    pub of: String,
-    /// Its value.
-    pub value: f64,
-    /// Lower end of its profile interval.
-    #[schema(value_type = Option<f64>)]
-    pub low: f64,
-    /// Upper end.
-    #[schema(value_type = Option<f64>)]
-    pub high: f64,
-}
-
-/// An effect of a group.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct EffectOutcome {
-    /// What names the group: `specimen`.
-    pub by: String,
-    /// The group.
-    pub group: String,
-    /// What varies.
-    pub of: String,
-    /// Its deviation from the mean over groups.
-    pub value: f64,
-    /// Its standard deviation.
-    pub sd: f64,
-}
-
-/// A prediction with the effects of known groups.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct MixedPredictionOutcome {
-    /// Line of the file that asks for it.
-    pub line: usize,
-    /// Means and intervals.
-    #[serde(flatten)]
-    pub prediction: MixedPrediction,
-    /// The same on the scale of the column that the response is a function of.
-    pub original: Option<OriginalPrediction>,
-}
-
-/// A fitted mixed model.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct MixedOutcome {
-    /// The formula.
-    pub formula: String,
-    /// What is modelled.
-    pub response: String,
-    /// "REML" or "ML".
-    pub method: &'static str,
-    /// "Satterthwaite" or "Kenward-Roger".
-    pub df_method: &'static str,
-    /// Rows that were used and left out, by the levels of the model's first category.
-    #[serde(flatten)]
-    pub count: RowCount,
-    /// Groups of each random term.
-    pub groups: Vec<(String, usize)>,
-    /// Fixed effects.
-    pub terms: Vec<Coefficient>,
-    /// Covariance of the fixed effects, in the order of `terms`.
-    pub covariance: Vec<Vec<f64>>,
-    /// In which ranges the columns of the model were.
-    pub ranges: Vec<RangeOutcome>,
-    /// F tests of the terms after all others.
-    pub anova: Vec<MixedTest>,
-    /// Standard deviations and correlations.
-    pub variances: Vec<VarianceOutcome>,
-    /// Part of the variance that fixed effects describe (marginal).
-    pub r2: f64,
-    /// Not defined for mixed models.
-    pub r2_adjusted: Option<f64>,
-    /// Part that fixed and random effects describe.
-    pub r2_conditional: f64,
-    /// Share of each random term in what fixed effects leave.
-    pub intraclass: Vec<f64>,
-    /// Log of the (restricted) likelihood.
-    pub log_likelihood: f64,
-    /// -2 times it.
-    pub criterion: f64,
-    /// Akaike's criterion.
-    pub aic: f64,
-    /// The same for small samples.
-    pub aicc: f64,
-    /// Schwarz' criterion.
-    pub bic: f64,
-    /// None: terms of mixed models are not selected.
-    pub removed: Vec<String>,
-    /// Effects of the groups.
-    pub effects: Vec<EffectOutcome>,
-    /// Predictions.
-    pub predictions: Vec<MixedPredictionOutcome>,
-    /// Marginal means.
-    pub means: Vec<MeansOutcome>,
-    /// What a reader must know.
-    pub findings: Vec<FindingOutcome>,
-}
-
-/// An F test of a term.
-#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
-pub struct MixedTest {
-    /// F with the degrees of freedom of the term; no sum of squares is defined.
-    #[serde(flatten)]
-    pub test: AnovaRow,
-    /// Degrees of freedom of the denominator.
-    pub df_denominator: f64,
-}
 
 struct Fitted {
     rows: ModelRows,
@@ -169,16 +63,7 @@ pub fn regress_mixed(
     formula: &Formula,
     text: &str,
 ) -> Result<MixedOutcome, Error> {
-    if request.select.is_some() {
-        let problem = "terms of mixed models are not selected here: compare models fitted by \
-                       --likelihood ml by their criteria";
-        return Err(unusable("--select", problem));
-    }
-    if request.robust {
-        let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
-                       their errors right";
-        return Err(unusable("--robust", problem));
-    }
+    check(request)?;
     let (kept, left_out) =
         complete_rows(formula, &data.table, &[]).map_err(|error| data.told(error))?;
     let table = chosen_rows(&data.table, &kept);
@@ -204,7 +89,12 @@ pub fn regress_mixed(
         None => coefficient_tests(&fitted.fit, &uncertainty, request.confidence),
         Some(adjusted) => kenward_roger_tests(&fitted.fit, adjusted, request.confidence),
     };
-    let (variances, profile_findings) = variances(&fitted.fit, request.confidence)?;
+    let profiles =
+        profile_variances(&fitted.fit, fitted.fit.method, request.confidence).map_err(mixed)?;
+    let (variances, profile_findings) = variances(&fitted.fit, &profiles);
+    let response = formula.response.as_ref().map(spelling).unwrap_or_default();
+    let inferred = (&fitted, &uncertainty, adjusted.as_ref());
+    draw(request, (&chosen, &response), inferred, &profiles)?;
     let mut findings = left_out_finding(&left_out, &data.lines);
     findings.extend(data.left_out_finding());
     findings.extend(code_findings(&fitted.rows.frame, &data.table));
@@ -212,18 +102,13 @@ pub fn regress_mixed(
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
     findings.extend(own.chain(profile_findings));
-    let (means, not_estimable) = means(
-        request,
-        data,
-        (formula, &kept),
-        (&fitted, &uncertainty, adjusted.as_ref()),
-    )?;
+    let (means, not_estimable) = means(request, data, (formula, &kept), inferred)?;
     findings.extend(not_estimable);
     let shares = variance_shares(&fitted.fit);
     let fit = &fitted.fit;
     Ok(MixedOutcome {
         formula: text.to_owned(),
-        response: formula.response.as_ref().map(spelling).unwrap_or_default(),
+        response,
         method: match fit.method {
             MixedMethod::Reml => "REML",
             MixedMethod::MaximumLikelihood => "ML",
@@ -260,6 +145,21 @@ pub fn regress_mixed(
     })
 }
 
+/// What linear models have, and mixed ones do not.
+fn check(request: &RegressRequest) -> Result<(), Error> {
+    if request.select.is_some() {
+        let problem = "terms of mixed models are not selected here: compare models fitted by \
+                       --likelihood ml by their criteria";
+        return Err(unusable("--select", problem));
+    }
+    if request.robust {
+        let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
+                       their errors right";
+        return Err(unusable("--robust", problem));
+    }
+    Ok(())
+}
+
 fn means(
     request: &RegressRequest,
     data: &Data,
@@ -273,13 +173,7 @@ fn means(
         table: &data.table,
         kept,
         response: formula.response.as_ref(),
-        estimate: &|weights| {
-            let own: Vec<f64> = fitted.columns.iter().map(|own| weights[*own]).collect();
-            match adjusted {
-                None => estimate(fit, uncertainty, &own),
-                Some(adjusted) => kenward_roger_estimate(fit, adjusted, &own),
-            }
-        },
+        estimate: &|weights| estimated(weights, (fitted, uncertainty, adjusted)),
         covariance: &|sums| {
             let own = sums.select_columns(&fitted.columns);
             let covariance = adjusted.map_or(&fit.covariance, |own| &own.covariance);
@@ -301,6 +195,53 @@ fn means(
         },
     };
     means_of(&model, &request.after, request.confidence)
+}
+
+/// A sum of fixed coefficients, with weights of all columns of the model.
+fn estimated(
+    weights: &[f64],
+    (fitted, uncertainty, adjusted): (&Fitted, &VarianceUncertainty, Option<&KenwardRoger>),
+) -> Estimated {
+    let own: Vec<f64> = fitted.columns.iter().map(|own| weights[*own]).collect();
+    match adjusted {
+        None => estimate(&fitted.fit, uncertainty, &own),
+        Some(adjusted) => kenward_roger_estimate(&fitted.fit, adjusted, &own),
+    }
+}
+
+/// Draws the model where figures are asked for.
+fn draw(
+    request: &RegressRequest,
+    (data, response): (&Data, &str),
+    inferred: (&Fitted, &VarianceUncertainty, Option<&KenwardRoger>),
+    profiles: &Profiles,
+) -> Result<(), Error> {
+    let Some(folder) = &request.figures else {
+        return Ok(());
+    };
+    let fitted = inferred.0;
+    let terms: Vec<RandomTerm> = fitted.terms.iter().map(|own| own.term.clone()).collect();
+    let mut paintings = mixed_paintings(&MixedShown {
+        response,
+        observed: &fitted.rows.y,
+        lines: &data.lines,
+        terms: &terms,
+        fit: &fitted.fit,
+        profiles,
+        confidence: request.confidence,
+    })?;
+    paintings.extend(effects_painting(&EffectModel {
+        response,
+        frame: &fitted.rows.frame,
+        estimated: &fitted.columns,
+        aliased: &fitted.aliased,
+        table: &data.table,
+        lines: &data.lines,
+        residuals: &fitted.fit.residuals,
+        estimate: &|weights| estimated(weights, inferred),
+        confidence: request.confidence,
+    })?);
+    write_paintings(folder, &paintings).map(|_| ())
 }
 
 fn mixed(error: windfall_statistics::mixed::error::MixedError) -> Error {
@@ -399,12 +340,7 @@ fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
 }
 
 /// Variances with profile intervals.
-fn variances(
-    fit: &MixedFit,
-    confidence: f64,
-) -> Result<(Vec<VarianceOutcome>, Vec<FindingOutcome>), Error> {
-    use windfall_statistics::mixed::constraint::VarianceParameter;
-    let profiles = profile_variances(fit, fit.method, confidence).map_err(mixed)?;
+fn variances(fit: &MixedFit, profiles: &Profiles) -> (Vec<VarianceOutcome>, Vec<FindingOutcome>) {
     let shown = profiles.intervals.iter().map(|interval| {
         let (group, kind, of, value) = match &interval.parameter {
             VarianceParameter::Sd { term, column } => {
@@ -441,10 +377,10 @@ fn variances(
         }
     });
     let findings = profiles.findings.iter();
-    Ok((
+    (
         shown.collect(),
         findings.map(|f| finding(f.code(), f.to_string())).collect(),
-    ))
+    )
 }
 
 fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {

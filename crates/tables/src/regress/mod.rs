@@ -1,8 +1,11 @@
 //! `windfall regress`: linear and mixed models.
 
+mod figures;
 pub mod findings;
 pub mod means;
 pub mod mixed;
+mod mixed_figures;
+pub mod mixed_outcome;
 pub mod mixed_text;
 pub mod outcome;
 pub mod request;

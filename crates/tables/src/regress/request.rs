@@ -5,6 +5,7 @@ use crate::option_words::{anova_type, contrast, direction, likelihood};
 use crate::reading::ReadingOptions;
 use crate::regress::means::request::MeansRequest;
 use std::path::PathBuf;
+use windfall_draw::files::FigureFolder;
 
 pub use windfall_statistics::mixed::fit::MixedMethod;
 pub use windfall_statistics::model::anova::AnovaType;
@@ -108,6 +109,9 @@ pub struct RegressRequest {
     /// Table with the columns of the model, to be predicted
     #[cfg_attr(feature = "clap", arg(long, value_name = "TABLE", value_hint = clap::ValueHint::FilePath))]
     pub predict: Option<PathBuf>,
+    /// Residuals with their influence, effects, and random effects with their profiles
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub figures: Option<FigureFolder>,
     /// How the table is read
     #[cfg_attr(feature = "clap", command(flatten))]
     pub reading: ReadingOptions,
@@ -138,6 +142,7 @@ impl RegressRequest {
             seed: 1,
             confidence: 0.95,
             predict: None,
+            figures: None,
             reading: ReadingOptions::default(),
         }
     }

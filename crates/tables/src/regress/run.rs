@@ -1,5 +1,6 @@
 //! `windfall regress`: a table and a formula → a linear model.
 
+use crate::regress::figures::draw_linear;
 use crate::regress::findings::{
     aliased_findings, code_findings, finding, fit_findings, lack_finding, left_out_finding,
     row_count,
@@ -20,6 +21,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
+use windfall_files::write_file::check_outputs;
 use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
@@ -107,6 +109,7 @@ pub enum AnyRegressOutcome {
 /// The table or the formula cannot be read; too few rows; a response of one value.
 pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     check(request)?;
+    check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
     let data = request.reading.read(&request.table)?;
     let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
     let mut text = request.formula(&names);
@@ -161,7 +164,12 @@ fn regress_linear(
         request.confidence,
     )
     .map_err(|error| data.told(error))?;
-    outcome(request, data, formula, &rows, &reduced, &selection, &fit)
+    let outcome = outcome(request, data, formula, &rows, &reduced, &selection, &fit)?;
+    if let Some(folder) = &request.figures {
+        let shown = (outcome.response.as_str(), outcome.influence.as_slice());
+        draw_linear(folder, request, data, (&rows, &fit), shown)?;
+    }
+    Ok(outcome)
 }
 
 fn check(request: &RegressRequest) -> Result<(), Error> {

@@ -1,14 +1,13 @@
 //! Response surfaces along single factors, and how well they meet the runs.
 
-use crate::regress::outcome::RowOutcome;
+use crate::figures::diagnostics::{Arrangement, Diagnostics, diagnostics_painting};
 use crate::surface::figure_pairs::{factor_title, reference_words};
 use crate::surface::fitted::{FittedSurfaces, desirability_at, settings_along};
 use crate::surface::outcome::{SurfaceModel, SurfaceOutcome};
-use windfall_draw::files::{NamedFigure, file_name};
+use windfall_draw::files::{NamedFigure, Painting};
 use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
+use windfall_files::error::Error;
 use windfall_files::text::column_title::column_title;
-use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
-use windfall_statistics::residuals::diagnostics::RowInfluence;
 use windfall_statistics::surface::desirability::desirability;
 
 const POINTS: usize = 81;
@@ -112,108 +111,23 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     })
 }
 
-/// Fitted against measured, and studentised residuals over the fitted value, in the order
-/// of the table and against normal scores, for each response.
-pub fn figures_of_models(outcome: &SurfaceOutcome, confidence: f64) -> Vec<NamedFigure> {
-    let models = outcome.responses.iter();
-    models
-        .map(|model| figure_of_model(model, confidence))
-        .collect()
-}
-
-fn figure_of_model(model: &SurfaceModel, confidence: f64) -> NamedFigure {
-    let (name, unit) = column_title(&model.response);
-    let rows = &model.influence;
-    let points = |x: fn(&RowInfluence) -> f64, y: fn(&RowInfluence) -> f64| {
-        let rows = rows
-            .iter()
-            .map(|row| (x(&row.influence), y(&row.influence)));
-        rows.collect::<Vec<(f64, f64)>>()
+/// Fitted against measured, residuals and influence of the runs, for each response.
+pub fn paintings_of_models(
+    outcome: &SurfaceOutcome,
+    confidence: f64,
+) -> Result<Vec<Painting>, Error> {
+    let painting = |model: &SurfaceModel| {
+        let rows = &model.influence;
+        let own = Diagnostics {
+            response: model.response.clone(),
+            lines: rows.iter().map(|row| row.line).collect(),
+            rows: rows.iter().map(|row| row.influence).collect(),
+            df: model.residual.df,
+            parameters: rows.len() - model.residual.df as usize,
+            confidence,
+        };
+        let name = format!("model-{}", model.response);
+        diagnostics_painting(&name, &own, Arrangement::Surface, Vec::new())
     };
-    let ends = rows.iter();
-    let ends = ends.flat_map(|row| [row.influence.observed, row.influence.fitted]);
-    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-        (low.min(v), high.max(v))
-    });
-    let mut panels = vec![Panel {
-        x: format!("measured {name}"),
-        x_unit: unit.clone(),
-        y: format!("fitted {name}"),
-        y_unit: unit.clone(),
-        series: vec![
-            drawn("", Style::Dashed, 6, vec![(low, low), (high, high)]),
-            drawn("runs", Style::Dots, 0, points(|r| r.observed, |r| r.fitted)),
-        ],
-        marks: Vec::new(),
-    }];
-    // A residual is held against the others without it: one degree of freedom less.
-    let limit = match model.residual.df > 1.0 {
-        true => t_upper_quantile(0.5 * (1.0 - confidence), model.residual.df - 1.0),
-        false => f64::NAN,
-    };
-    let label = format!(
-        "{} % of those of independent normal noise",
-        100.0 * confidence
-    );
-    let mut over = |x: String, x_unit: &str, dots: Vec<(f64, f64)>| {
-        let at = dots.first().map_or(0.0, |point| point.0);
-        panels.push(Panel {
-            x,
-            x_unit: x_unit.to_owned(),
-            y: "studentised residual".to_owned(),
-            y_unit: String::new(),
-            series: vec![
-                drawn("runs", Style::Dots, 0, dots),
-                drawn(&label, Style::Level, 1, vec![(at, limit), (at, -limit)]),
-            ],
-            marks: Vec::new(),
-        });
-    };
-    over(
-        format!("fitted {name}"),
-        &unit,
-        points(|r| r.fitted, |r| r.studentised),
-    );
-    over(
-        "line of the table".to_owned(),
-        "",
-        rows.iter()
-            .map(|r| (r.line as f64, r.influence.studentised))
-            .collect(),
-    );
-    panels.push(normal_panel(rows));
-    NamedFigure {
-        name: file_name(&format!("model-{}", model.response)),
-        caption: "Fitted against measured; residuals over their standard deviation without the \
-                  run itself, over the fitted value, in the order of the table, and against \
-                  normal scores."
-            .to_owned(),
-        figure: Figure {
-            title: format!("{name}: model and runs"),
-            panels,
-        },
-    }
-}
-
-/// Studentised residuals against normal scores (Blom 1958: (i − 3/8)/(n + 1/4)).
-fn normal_panel(rows: &[RowOutcome]) -> Panel {
-    let finite = rows.iter().map(|row| row.influence.studentised);
-    let mut sorted: Vec<f64> = finite.filter(|value| value.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let n = sorted.len() as f64;
-    let score = |i: usize| normal_quantile((i as f64 + 0.625) / (n + 0.25));
-    let points: Vec<(f64, f64)> = (0..sorted.len()).map(|i| (score(i), sorted[i])).collect();
-    let ends = points.first().zip(points.last());
-    let line = ends.map_or(Vec::new(), |(a, b)| vec![(a.0, a.0), (b.0, b.0)]);
-    Panel {
-        x: "normal score".to_owned(),
-        x_unit: String::new(),
-        y: "studentised residual".to_owned(),
-        y_unit: String::new(),
-        series: vec![
-            drawn("", Style::Dashed, 6, line),
-            drawn("runs", Style::Dots, 0, points),
-        ],
-        marks: Vec::new(),
-    }
+    outcome.responses.iter().map(painting).collect()
 }

@@ -191,11 +191,13 @@ impl Scene {
         let small = 10.0;
         for (at, label) in x.ticks.iter().zip(&x.labels) {
             let (px, py) = self.place(*at, y.low, z.low);
-            drawing.text((px + 5.0, py + 12.0), Anchor::Start, small, label);
+            drawing.rule((px, py), (px + 3.0, py + 4.0), Ink::Frame);
+            drawing.text((px + 5.0, py + 14.0), Anchor::Start, small, label);
         }
         for (at, label) in y.ticks.iter().zip(&y.labels) {
             let (px, py) = self.place(x.low, *at, z.low);
-            drawing.text((px - 5.0, py + 12.0), Anchor::End, small, label);
+            drawing.rule((px, py), (px - 3.0, py + 4.0), Ink::Frame);
+            drawing.text((px - 5.0, py + 14.0), Anchor::End, small, label);
         }
         for (at, label) in z.ticks.iter().zip(&z.labels) {
             let (px, py) = self.place(x.low, y.high, *at);

@@ -11,7 +11,7 @@ use crate::surface::factors::{coded_factors, coding_findings, coding_text};
 use crate::surface::figure_contour::contour_paintings;
 use crate::surface::figure_effects::effects_painting;
 use crate::surface::figure_lines::{
-    figure_of_desirability, figure_of_perturbation, figures_of_models,
+    figure_of_desirability, figure_of_perturbation, paintings_of_models,
 };
 use crate::surface::figure_view::view_paintings;
 use crate::surface::fitted::{FittedSurfaces, ResponseSurface};
@@ -153,10 +153,10 @@ fn draw(
     for model in &outcome.responses {
         paintings.extend(effects_painting(model, confidence)?);
     }
+    paintings.extend(paintings_of_models(outcome, confidence)?);
     write_paintings(folder, &paintings)?;
     let mut figures = vec![figure_of_perturbation(fitted)];
     figures.extend(figure_of_desirability(fitted));
-    figures.extend(figures_of_models(outcome, confidence));
     let figures: Vec<&NamedFigure> = figures.iter().collect();
     write_figures(folder, &figures).map(|_| ())
 }

@@ -3,6 +3,7 @@
 use crate::args::compare::{CompareArguments, SummaryArguments};
 use crate::show::show;
 use windfall_tables::compare::agreement::agreement;
+use windfall_tables::compare::agreement_figure::draw_agreement;
 use windfall_tables::compare::run::compare_groups;
 use windfall_tables::compare::summary::summarize_table;
 use windfall_tables::compare::text::{
@@ -20,7 +21,11 @@ pub fn run_summary(arguments: &SummaryArguments) -> anyhow::Result<()> {
 pub fn run_compare(arguments: &CompareArguments) -> anyhow::Result<()> {
     let (format, request) = (arguments.format, &arguments.request);
     if let Some(asked) = &arguments.agreement {
-        let outcome = agreement(&request.reading.read(&request.table)?, asked)?;
+        let data = request.reading.read(&request.table)?;
+        let outcome = agreement(&data, asked)?;
+        if let Some(folder) = &request.figures {
+            draw_agreement(folder, &data, asked)?;
+        }
         return show(format, &outcome, text_of_agreement, csv_of_agreement);
     }
     let outcome = compare_groups(request)?;

@@ -284,6 +284,27 @@ pub const WRITTEN: &[Output] = &[
         SCENE,
     ),
     (
+        "regress",
+        "--figures",
+        Kind::Folder,
+        "regress design.csv --response y --terms A+B --figures {}",
+        &["design.csv"],
+    ),
+    (
+        "compare",
+        "--figures",
+        Kind::Folder,
+        "compare design.csv --value y --by A --figures {}",
+        &["design.csv"],
+    ),
+    (
+        "summary",
+        "--figures",
+        Kind::Folder,
+        "summary design.csv --value y --figures {}",
+        &["design.csv"],
+    ),
+    (
         "surface",
         "--figures",
         Kind::Folder,

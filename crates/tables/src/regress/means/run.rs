@@ -193,12 +193,8 @@ impl Asking<'_> {
     /// The column without an estimate that a sum rests on otherwise than the columns do on which
     /// that one depends.
     fn missing(&self, row: &[f64]) -> Option<&str> {
-        let size = row.iter().fold(1.0, |most: f64, own| most.max(own.abs()));
-        let found = self.model.aliased.iter().find(|aliased| {
-            let terms = aliased.combination.iter();
-            let expected: f64 = terms.map(|(column, factor)| factor * row[*column]).sum();
-            (row[aliased.column] - expected).abs() > 1e-8 * size
-        })?;
+        let mut aliased = self.model.aliased.iter();
+        let found = aliased.find(|own| !own.agrees(row))?;
         Some(&self.model.frame.names[found.column])
     }
 

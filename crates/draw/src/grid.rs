@@ -1,0 +1,348 @@
+//! Figures of small panels side by side: diagnostics of a model, groups, effects.
+
+use crate::axis::{Axis, axis};
+use crate::frame::{Frame, Rectangle};
+use crate::panel::Panel;
+use crate::panel_drawing::{Labels, draw_legend, draw_within, legend_height, range};
+use crate::svg::{Anchor, Drawing, Ink};
+
+/// Room around a panel and above all of them; px.
+const RIGHT: f64 = 14.0;
+const BELOW: f64 = 50.0;
+const TITLE: f64 = 20.0;
+const TOP: f64 = 34.0;
+
+/// Room beside an axis of numbers; px.
+const BESIDE: f64 = 58.0;
+
+/// Height of a line of the notes below the panels; px.
+const NOTE: f64 = 14.0;
+
+/// Width of a character of the names and notes, and of titles; px.
+const CHARACTER: f64 = 5.7;
+const TITLE_CHARACTER: f64 = 6.3;
+
+/// Longest name at an axis; characters.
+const LONGEST_NAME: usize = 22;
+
+/// Labels within a small panel.
+const LABELS: Labels = Labels {
+    size: 10.0,
+    character: 5.8,
+    line: 10.5,
+    ring: 3.6,
+    dots: (1.9, 1.2),
+    alike: true,
+    whole: true,
+};
+
+/// What stands along an axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Scale {
+    /// Round numbers over the range of the data.
+    #[default]
+    Data,
+    /// Round numbers from one end to the other, at least as far as the data.
+    Reaching(f64, f64),
+    /// Round numbers from exactly one end to the other: what lies beyond is not drawn.
+    Between(f64, f64),
+    /// Names at 0, 1, 2 …
+    Names(Vec<String>),
+}
+
+/// A small panel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridPanel {
+    /// What stands above it.
+    pub title: String,
+    /// Its series and named places.
+    pub panel: Panel,
+    /// Horizontal axis.
+    pub across: Scale,
+    /// Vertical axis.
+    pub up: Scale,
+    /// Texts about places, in the units of the axes.
+    pub texts: Vec<((f64, f64), String)>,
+    /// Why it is empty, where it is.
+    pub empty: String,
+}
+
+impl GridPanel {
+    /// A panel with axes of numbers over its data.
+    pub fn new(title: impl Into<String>, panel: Panel) -> Self {
+        Self {
+            title: title.into(),
+            panel,
+            across: Scale::Data,
+            up: Scale::Data,
+            texts: Vec::new(),
+            empty: String::new(),
+        }
+    }
+
+    /// Whether no series has a point that can be drawn.
+    fn is_empty(&self) -> bool {
+        let points = self.panel.series.iter().flat_map(|own| &own.points);
+        let mut finite = points.filter(|(x, y)| x.is_finite() && y.is_finite());
+        finite.next().is_none()
+    }
+}
+
+/// A figure of panels side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Its title.
+    pub title: String,
+    /// Panels, row after row.
+    pub panels: Vec<GridPanel>,
+    /// How many stand side by side.
+    pub columns: usize,
+    /// Width and height of each panel; px.
+    pub size: (f64, f64),
+    /// What a reader must know, below the panels.
+    pub notes: Vec<String>,
+}
+
+/// Draws a grid, whose colours a theme names later.
+///
+/// A panel without a finite point shows why it is empty. Places beyond the ends of a scale are
+/// not drawn.
+pub fn drawing_of_grid(grid: &Grid) -> Drawing {
+    let columns = grid.columns.clamp(1, grid.panels.len().max(1));
+    let (width, height) = grid.size;
+    let beside = grid.panels.iter().map(room_beside).fold(BESIDE, f64::max);
+    let step = beside + width + RIGHT;
+    let whole = step * columns as f64;
+    let legend = |own: &GridPanel| legend_height(&own.panel, (0.0, width), &LABELS);
+    let rows: Vec<f64> = grid
+        .panels
+        .chunks(columns)
+        .map(|row| row.iter().map(legend).fold(0.0, f64::max))
+        .collect();
+    let notes = grid.notes.iter();
+    let letters = ((whole - 28.0) / CHARACTER) as usize;
+    let notes: Vec<String> = notes.flat_map(|note| wrapped(note, letters)).collect();
+    let titled = grid.panels.iter().any(|own| !own.title.is_empty());
+    let above = if titled { TITLE } else { 0.0 };
+    let panels: f64 = rows.iter().map(|own| above + own + height + BELOW).sum();
+    let total = TOP + panels + NOTE * notes.len() as f64 + 8.0;
+    let mut drawing = Drawing::new(whole, total);
+    drawing.text((14.0, 22.0), Anchor::Start, 13.0, &grid.title);
+    let mut top = TOP;
+    for (row, legend) in grid.panels.chunks(columns).zip(&rows) {
+        for (place, own) in row.iter().enumerate() {
+            let within = Rectangle {
+                left: place as f64 * step + beside,
+                top: top + above + legend,
+                width,
+                height,
+            };
+            let title = (within.left, top + 14.0);
+            let most = (step / TITLE_CHARACTER) as usize;
+            drawing.text(title, Anchor::Start, 11.5, &cut(&own.title, most));
+            draw_panel(&mut drawing, own, within);
+        }
+        top += above + legend + height + BELOW;
+    }
+    for (line, note) in notes.iter().enumerate() {
+        let at = (14.0, top + NOTE * line as f64 + 6.0);
+        drawing.text(at, Anchor::Start, 10.5, note);
+    }
+    drawing
+}
+
+/// Room beside a panel for the longest name at its vertical axis; px.
+fn room_beside(own: &GridPanel) -> f64 {
+    let Scale::Names(names) = &own.up else {
+        return BESIDE;
+    };
+    let longest = names.iter().map(|name| name.chars().count()).max();
+    let longest = longest.unwrap_or(0).min(LONGEST_NAME);
+    40.0 + CHARACTER * longest as f64
+}
+
+fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
+    let empty = own.is_empty();
+    let across = axis_of(&own.across, range(&own.panel, |point| point.0), 5, 0.03);
+    let up = axis_of(&own.up, range(&own.panel, |point| point.1), 5, 0.1);
+    let mut frame = Frame { within, across, up };
+    if empty {
+        frame.across.ticks.clear();
+        frame.up.ticks.clear();
+    }
+    if let Scale::Names(names) = &own.across {
+        frame.across.labels = fitting(names, within.width / names.len().max(1) as f64);
+    }
+    frame.draw_grid(drawing);
+    let panel = &own.panel;
+    let (x, y) = ((&*panel.x, &*panel.x_unit), (&*panel.y, &*panel.y_unit));
+    frame.draw_axes(drawing, x, y, room_beside(own) - 14.0);
+    if empty {
+        let why = match own.empty.is_empty() {
+            true => "no finite numbers to draw",
+            false => &own.empty,
+        };
+        let letters = (0.9 * within.width / CHARACTER) as usize;
+        let middle = within.left + 0.5 * within.width;
+        for (line, text) in wrapped(why, letters).iter().enumerate() {
+            let at = (
+                middle,
+                within.top + 0.35 * within.height + NOTE * line as f64,
+            );
+            drawing.text(at, Anchor::Middle, 10.5, text);
+        }
+        return;
+    }
+    draw_within(drawing, &inside(panel, &frame), &frame, &LABELS);
+    draw_legend(
+        drawing,
+        &with_short_labels(panel, within.width),
+        &frame,
+        &LABELS,
+    );
+    for (at, text) in &own.texts {
+        let (x, y) = frame.place(*at);
+        drawing.text_over((x, y + 3.6), (Anchor::Middle, 10.5), text, Ink::Background);
+    }
+}
+
+/// The panel with labels of its legend that end within a width; px.
+fn with_short_labels(panel: &Panel, width: f64) -> Panel {
+    let most = ((width - 24.0) / LABELS.character) as usize;
+    let mut panel = panel.clone();
+    for series in &mut panel.series {
+        series.label = cut(&series.label, most);
+        series.points.clear();
+    }
+    panel
+}
+
+/// The panel without what lies beyond its frame.
+fn inside(panel: &Panel, frame: &Frame) -> Panel {
+    let holds = |axis: &Axis, value: f64| {
+        let room = 1e-9 * (axis.high - axis.low);
+        value >= axis.low - room && value <= axis.high + room
+    };
+    let within = |(x, y): &(f64, f64)| holds(&frame.across, *x) && holds(&frame.up, *y);
+    let mut panel = panel.clone();
+    for series in &mut panel.series {
+        if !series.style.has_ends() {
+            series.points.retain(within);
+        }
+    }
+    panel.marks.retain(|mark| within(&mark.at));
+    panel
+}
+
+fn axis_of(scale: &Scale, (low, high): (f64, f64), ticks: usize, room: f64) -> Axis {
+    match scale {
+        Scale::Names(names) => Axis {
+            low: -0.6,
+            high: names.len().max(1) as f64 - 0.4,
+            ticks: (0..names.len()).map(|place| place as f64).collect(),
+            labels: fitting(names, CHARACTER * LONGEST_NAME as f64),
+            power: 0,
+        },
+        Scale::Between(low, high) => axis(*low, *high, ticks),
+        Scale::Reaching(from, to) => {
+            let (low, high) = (low.min(*from), high.max(*to));
+            let room = room * (high - low);
+            // An end that was asked for, such as zero, is the end.
+            let low = if low < *from { low - room } else { low };
+            let high = if high > *to { high + room } else { high };
+            axis(low, high, ticks)
+        }
+        Scale::Data => {
+            let room = room * (high - low);
+            axis(low - room, high + room, ticks)
+        }
+    }
+}
+
+/// Names cut so that each fits into a width; px.
+fn fitting(names: &[String], width: f64) -> Vec<String> {
+    let most = ((width / CHARACTER) as usize).clamp(2, LONGEST_NAME);
+    names.iter().map(|name| cut(name, most)).collect()
+}
+
+/// A text of at most so many characters.
+fn cut(text: &str, most: usize) -> String {
+    match text.chars().count() > most {
+        true => text.chars().take(most.max(1) - 1).chain(['…']).collect(),
+        false => text.to_owned(),
+    }
+}
+
+/// A text in lines of at most so many characters, broken between words.
+fn wrapped(text: &str, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    // A number stays with its percent sign.
+    for word in text.replace(" %", "\u{a0}%").split([' ', '\n']) {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::panel::{Series, Style};
+    use crate::theme::LIGHT;
+
+    fn panel(points: Vec<(f64, f64)>) -> GridPanel {
+        let series = vec![Series::new("rows", Style::Dots, points)];
+        GridPanel::new("title", Panel::new(("x", ""), ("y", "N"), series))
+    }
+
+    fn svg(panels: Vec<GridPanel>) -> String {
+        let grid = Grid {
+            title: "a grid".to_owned(),
+            panels,
+            columns: 2,
+            size: (200.0, 180.0),
+            notes: vec!["a note".to_owned()],
+        };
+        drawing_of_grid(&grid).svg(&LIGHT)
+    }
+
+    #[test]
+    fn closed_form_an_empty_panel_says_why() {
+        let mut own = panel(vec![(f64::NAN, 1.0)]);
+        own.empty = "no degrees of freedom are left".to_owned();
+        let text = svg(vec![own, panel(Vec::new())]);
+        assert!(text.contains("no degrees of freedom") && text.contains("no finite numbers"));
+        assert!(!text.contains("NaN") && !text.contains("circle"), "{text}");
+    }
+
+    /// What lies beyond the ends is not drawn; names stand at whole places and are cut.
+    #[test]
+    fn closed_form_scales() {
+        let mut own = panel(vec![(0.0, 1.0), (1.0, 2.0), (1.0, 9.0)]);
+        own.up = Scale::Between(0.0, 3.0);
+        let names = ["Gala", "a name that is far too long for its place"];
+        own.across = Scale::Names(names.map(str::to_owned).to_vec());
+        let text = svg(vec![own]);
+        // Two points, and three dots of the legend.
+        assert_eq!(text.matches("<circle").count(), 2 + 3);
+        assert!(
+            text.contains(">Gala<") && text.contains("a name that is f…"),
+            "{text}"
+        );
+        let mut own = panel(vec![(0.0, 1.0), (1.0, 2.0)]);
+        own.up = Scale::Reaching(0.0, 0.0);
+        assert_eq!(axis_of(&own.up, (1.0, 2.0), 5, 0.06).low, 0.0);
+    }
+
+    #[test]
+    fn closed_form_lines_break_between_words() {
+        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
+        assert_eq!(wrapped("incomprehensible", 5), ["incomprehensible"]);
+        assert!(svg(vec![panel(vec![(1.0, 1.0)]); 3]).contains("a note"));
+    }
+}

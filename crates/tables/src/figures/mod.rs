@@ -1,0 +1,10 @@
+//! Figures that several commands draw: residuals, effects, groups.
+
+pub mod diagnostics;
+pub mod distribution;
+pub mod effects;
+pub mod groups;
+pub mod quantiles;
+pub mod settings;
+pub mod thinning;
+pub mod words;
