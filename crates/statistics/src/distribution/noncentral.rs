@@ -8,6 +8,9 @@ use std::f64::consts::TAU;
 /// Exponent below which a part of an integral is nothing: e⁻⁴² is 6e-19.
 const NOTHING: f64 = -42.0;
 
+/// Standard deviations beyond which a normal number is not found: Φ(-39) is 1e-332.
+const CERTAIN: f64 = 39.0;
+
 /// Step of the trapezoidal rule in standard deviations of the integrand: the rule's error is
 /// e^(-2π²/0.36).
 const STEP: f64 = 0.6;
@@ -45,6 +48,14 @@ pub fn noncentral_t_upper(t: f64, df: f64, ncp: f64) -> f64 {
     if df.is_infinite() {
         return normal_upper(t - ncp);
     }
+    // beyond all doubt, whatever the scale
+    let largest = largest_scale(df);
+    if ncp - t.max(0.0) * largest > CERTAIN {
+        return 1.0;
+    }
+    if -ncp - (-t).max(0.0) * largest > CERTAIN {
+        return 0.0;
+    }
     // ln g(u) = constant + df (u - (e²ᵘ - 1)/2), largest at u = 0
     let exponent = |u: f64| df * (u - 0.5 * (2.0 * u).exp_m1());
     let top = scale_density(df);
@@ -60,6 +71,15 @@ pub fn noncentral_t_upper(t: f64, df: f64, ncp: f64) -> f64 {
         }
     }
     at_most_one(top * step * sum)
+}
+
+/// What √(χ²/df) exceeds with a probability below e⁻⁴².
+///
+/// # Source
+/// Laurent and Massart (2000), Ann. Statist. 28, 1302, eq. 4.3.
+fn largest_scale(df: f64) -> f64 {
+    let x = -NOTHING / df;
+    (1.0 + 2.0 * x.sqrt() + 2.0 * x).sqrt()
 }
 
 /// The density of ln √(χ²/df) at zero, where it is largest: 2 (df/2)^(df/2) e^(-df/2)/Γ(df/2).
@@ -84,6 +104,10 @@ pub fn noncentral_f_upper(f: f64, df_above: f64, df_below: f64, ncp: f64) -> f64
     }
     if ncp == 0.0 || f <= 0.0 {
         return f_upper(f, df_above, df_below);
+    }
+    // χ² of ncp is that of 1 and √ncp at least: beyond all doubt, whatever the scale
+    if ncp.sqrt() - (df_above * f).sqrt() * largest_scale(df_below) > CERTAIN {
+        return 1.0;
     }
     let whole = df_below + df_above * f;
     let (below, above) = (df_below / whole, df_above * f / whole);
@@ -167,6 +191,10 @@ mod tests {
             1e-12,
             "F",
         );
+        for (ncp, expected) in [(1e300, 1.0), (60.0, 1.0), (-1e300, 0.0)] {
+            assert_eq!(noncentral_t_upper(2.0, 30.0, ncp), expected);
+        }
+        assert_eq!(noncentral_f_upper(2.0, 3.0, 30.0, 1e300), 1.0);
         assert!(noncentral_t_upper(1.0, 0.0, 1.0).is_nan());
         assert!(noncentral_t_upper(f64::NAN, 3.0, 1.0).is_nan());
         assert!(noncentral_f_upper(1.0, 2.0, 3.0, -1.0).is_nan());

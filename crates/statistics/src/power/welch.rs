@@ -88,23 +88,25 @@ pub fn welch_assured_half_width(groups: &TwoGroups, confidence: f64, assurance: 
 
 /// Welch's degrees of freedom with the true variances.
 pub fn welch_df(groups: &TwoGroups) -> f64 {
-    let [first, second] = squared_errors(groups);
+    let [first, second] = shares(groups);
     let [df_first, df_second] = dfs(groups);
     (first + second).powi(2) / (first * first / df_first + second * second / df_second)
 }
 
 /// True standard error of the difference.
 pub fn true_error(groups: &TwoGroups) -> f64 {
-    let [first, second] = squared_errors(groups);
-    (first + second).sqrt()
+    let [first, second] = [0, 1].map(|k| groups.sds[k] / (groups.sizes[k] as f64).sqrt());
+    first.hypot(second)
 }
 
 fn width(share: &Share, confidence: f64) -> f64 {
     interval_quantile(confidence, share.df) * share.q.sqrt()
 }
 
-fn squared_errors(groups: &TwoGroups) -> [f64; 2] {
-    [0, 1].map(|k| groups.sds[k] * groups.sds[k] / groups.sizes[k] as f64)
+/// Shares of the two groups in the squared true standard error.
+fn shares(groups: &TwoGroups) -> [f64; 2] {
+    let error = true_error(groups);
+    [0, 1].map(|k| (groups.sds[k] / error).powi(2) / groups.sizes[k] as f64)
 }
 
 fn dfs(groups: &TwoGroups) -> [f64; 2] {
@@ -119,12 +121,11 @@ fn pooled_df(groups: &TwoGroups) -> f64 {
 /// in which the density is analytic and vanishes exponentially on both sides.
 fn average(groups: &TwoGroups, function: impl Fn(&Share) -> f64) -> f64 {
     let [a, b] = dfs(groups).map(|df| 0.5 * df);
-    let [first, second] = squared_errors(groups);
+    let [first, second] = shares(groups);
     if !(a > 0.0 && b > 0.0 && first > 0.0 && second > 0.0) {
         return f64::NAN;
     }
     let (df_first, df_second) = (2.0 * a, 2.0 * b);
-    let total = first + second;
     // the density a ln x + b ln(1 - x) is largest at x = a/(a + b)
     let centre = (a / b).ln();
     let exponent = |w: f64| {
@@ -140,7 +141,7 @@ fn average(groups: &TwoGroups, function: impl Fn(&Share) -> f64) -> f64 {
         let (own, other) = (first * x / df_first, second * y / df_second);
         let share = Share {
             weight: exponent(w).exp(),
-            q: (own + other) / total,
+            q: own + other,
             df: (own + other).powi(2) / (own * own / df_first + other * other / df_second),
         };
         share.weight * function(&share)
