@@ -6,14 +6,19 @@
 
 pub mod achieved;
 pub mod closed;
+pub mod critical;
 mod figure;
 pub mod model;
 pub mod options;
 pub mod outcome;
 mod parse;
+pub mod population;
 mod question;
+mod replicates;
 mod run;
 pub mod scatter;
 mod search;
 mod study;
+pub mod surface;
+
 pub mod text;

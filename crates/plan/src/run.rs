@@ -370,7 +370,7 @@ fn missed(
             row.fruit,
             question.counted(),
             impacts_text(row.impacts),
-            plain(value.unwrap_or(f64::NAN))
+            value.map_or_else(|| "nothing".to_owned(), plain)
         )
     };
     if short.len() == rows.len() {
@@ -442,26 +442,29 @@ fn choose(asked: &Asked, rows: &mut [PlanRow]) -> Option<FindingOutcome> {
     None
 }
 
-/// Simulated studies that failed, or had no variance between fruit.
+/// Simulated studies that failed.
 fn simulated_findings(rows: &[PlanRow]) -> Vec<FindingOutcome> {
-    let mut findings = Vec::new();
-    for row in rows.iter().filter(|row| row.failed > 0) {
+    let failed = rows.iter().filter(|row| row.failed > 0);
+    let finding = |row: &PlanRow| {
         let causes = row.failures.iter();
         let causes: Vec<String> = causes
             .map(|(why, count)| format!("{count}: {why}"))
             .collect();
-        findings.push(FindingOutcome::new(
+        let so = match row.power {
+            Some(_) => "and count as not having found the effect",
+            None => "and are left out of the mean, which is not told where they are many",
+        };
+        FindingOutcome::new(
             "simulations-failed",
             format!(
-                "{} fruit, {} each: {} of {} simulated studies could not be evaluated and count \
-                 as not having found the effect ({})",
+                "{} fruit with {}: {} of {} simulated studies could not be evaluated {so} ({})",
                 row.fruit,
                 impacts_text(row.impacts),
                 row.failed,
                 row.simulations.unwrap_or_default(),
                 causes.join("; ")
             ),
-        ));
-    }
-    findings
+        )
+    };
+    failed.map(finding).collect()
 }

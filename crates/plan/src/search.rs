@@ -21,7 +21,7 @@ impl Goal {
         match self {
             Self::Open => None,
             Self::Power(wanted) => told.power.map(|power| power.value >= wanted),
-            Self::HalfWidth(wanted) => told.half_width.map(|half| half <= wanted),
+            Self::HalfWidth(wanted) => Some(told.half_width.is_some_and(|half| half <= wanted)),
         }
     }
 }

@@ -253,43 +253,6 @@ impl Study {
         terms.collect()
     }
 
-    /// Standard errors of the coefficients of a study of another size, the variances being those
-    /// of the fit: (X'V⁻¹X)⁻¹, summed fruit by fruit. NaN where it tells nothing of them.
-    pub fn standard_errors(&self, resized: &Resized) -> Vec<f64> {
-        let p = self.told.x.ncols();
-        let mut information = DMatrix::<f64>::zeros(p, p);
-        let count = resized.fruit.last().map_or(0, |last| last + 1);
-        let mut from = 0;
-        for place in 0..count {
-            let own = resized.fruit[from..]
-                .iter()
-                .take_while(|fruit| **fruit == place);
-            let rows = &resized.rows[from..from + own.count()];
-            from += rows.len();
-            let x = DMatrix::from_fn(rows.len(), p, |i, j| self.told.x[(rows[i], j)]);
-            let Some(solved) = self.covariance(rows).cholesky().map(|root| root.solve(&x)) else {
-                return vec![f64::NAN; p];
-            };
-            information += x.tr_mul(&solved);
-        }
-        match information.cholesky() {
-            Some(root) => root.inverse().diagonal().iter().map(|v| v.sqrt()).collect(),
-            None => vec![f64::NAN; p],
-        }
-    }
-
-    /// Covariance of the rows of a fruit.
-    fn covariance(&self, rows: &[usize]) -> DMatrix<f64> {
-        let n = rows.len();
-        let residual = self.fit.residual_sd.powi(2);
-        let mut sum = DMatrix::from_diagonal_element(n, n, residual);
-        for (term, variance) in self.random.iter().zip(&self.fit.variances) {
-            let z = DMatrix::from_fn(n, term.columns.len(), |i, k| term.columns[k][rows[i]]);
-            sum += &z * &variance.covariance * z.transpose();
-        }
-        sum
-    }
-
     /// How a coefficient of `told` is made of those of `tested`: the weights.
     pub fn weights_of(&self, coefficient: usize) -> Option<Vec<f64>> {
         // X_told = X_tested M, so that β_tested = M β_told

@@ -7,11 +7,11 @@ use windfall_files::text::number::plain;
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{findings_list, page_tables, paragraph};
 
-/// "0.8012", simulated "0.801 ± 0.013".
+/// "0.8012", simulated "0.801 (0.775 to 0.825)".
 fn share_text(share: &ShareOutcome) -> String {
-    match share.se {
+    match share.low.zip(share.high) {
         None => format!("{:.4}", share.value),
-        Some(se) => format!("{:.3} ± {se:.3}", share.value),
+        Some((low, high)) => format!("{:.3} ({low:.3} to {high:.3})", share.value),
     }
 }
 

@@ -23,7 +23,7 @@ pub struct AchievedEstimate {
     /// means and the intercept, which are not tested against zero.
     pub detectable: Option<f64>,
     /// Half-width that half as many fruit would have given, about; none where so few tell
-    /// nothing, and for means.
+    /// nothing.
     pub half_width_with_half: Option<f64>,
     /// Half-width that twice as many fruit would have given, about.
     pub half_width_with_twice: Option<f64>,

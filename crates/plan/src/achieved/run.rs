@@ -3,14 +3,13 @@
 use crate::achieved::outcome::{AchievedEstimate, AchievedOutcome};
 use crate::achieved::request::AchievedRequest;
 use crate::parse::part;
-use crate::question::Size;
-use crate::study::{Study, read_study};
+use crate::study::read_study;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_statistics::distribution::tail::t_upper_quantile;
 use windfall_statistics::power::t_test::detectable_effect;
 use windfall_statistics::power::{Sides, Test};
-use windfall_tables::regress::means::{Adjust, MeansOutcome};
+use windfall_tables::regress::means::Adjust;
 use windfall_tables::regress::mixed::MixedOutcome;
 use windfall_tables::regress::request::RegressRequest;
 use windfall_tables::regress::run::{AnyRegressOutcome, regress};
@@ -37,18 +36,17 @@ pub fn achieved(request: &AchievedRequest) -> Result<AchievedOutcome, Error> {
     }
     let (study, _) = read_study(&request.table, &request.formula, &request.reading)?;
     let outcome = regressed(request)?;
-    let mut estimates = coefficients(&study, &outcome, (test, request.power));
-    for means in &outcome.means {
-        estimates.extend(estimates_of_means(means, (test, request.power)));
-    }
+    let fruit = study.fruit.len();
+    let estimates = estimates(&outcome).into_iter();
+    let estimates = estimates.map(|known| told(known, fruit, (test, request.power)));
     Ok(AchievedOutcome {
         formula: outcome.formula.clone(),
         by: study.by.clone(),
-        fruit: study.fruit.len(),
+        fruit,
         impacts: outcome.count.rows,
         confidence: request.confidence,
         power: request.power,
-        estimates,
+        estimates: estimates.collect(),
         variances: outcome.variances,
         findings: outcome.findings,
     })
@@ -72,80 +70,75 @@ fn regressed(request: &AchievedRequest) -> Result<Box<MixedOutcome>, Error> {
     }
 }
 
-/// Coefficients; standard errors of other numbers of fruit with the variances of the fit, their
-/// degrees of freedom in proportion to the fruit.
-fn coefficients(
-    study: &Study,
-    outcome: &MixedOutcome,
-    (test, power): (Test, f64),
-) -> Vec<AchievedEstimate> {
-    let all = study.fruit.len();
-    let half = other_errors(study, all / 2);
-    let twice = other_errors(study, 2 * all);
-    let scaled = |errors: &[f64], place: usize, df: f64| {
-        let half_width = errors.get(place)? * t_upper_quantile(test.tail(), df);
-        half_width.is_finite().then_some(half_width)
-    };
-    let terms = outcome.terms.iter().enumerate();
-    terms
-        .map(|(place, term)| AchievedEstimate {
-            kind: "coefficient",
-            name: term.name.clone(),
-            estimate: term.estimate,
-            se: term.se,
-            df: term.df,
-            half_width: 0.5 * (term.high - term.low),
-            detectable: (term.name != "(Intercept)")
-                .then(|| term.se * detectable_effect(power, term.df, test))
-                .filter(|value| value.is_finite()),
-            half_width_with_half: scaled(&half, place, 0.5 * term.df),
-            half_width_with_twice: scaled(&twice, place, 2.0 * term.df),
-        })
-        .collect()
+/// What is known of an estimate.
+struct Known {
+    kind: &'static str,
+    name: String,
+    estimate: f64,
+    se: f64,
+    df: f64,
+    half_width: f64,
 }
 
-fn other_errors(study: &Study, fruit: usize) -> Vec<f64> {
-    let size = Size { fruit, impacts: 1 };
-    match fruit {
-        0 | 1 => Vec::new(),
-        _ => study.standard_errors(&study.resized(size, true)),
+/// Estimates with what they could have told.
+///
+/// What a study tells of its coefficients is a sum over its fruit: with as many fruit again of
+/// the same settings squared standard errors are halved. Degrees of freedom are taken in
+/// proportion.
+fn told(known: Known, fruit: usize, (test, power): (Test, f64)) -> AchievedEstimate {
+    let Known {
+        kind,
+        name,
+        estimate,
+        se,
+        df,
+        half_width,
+    } = known;
+    let scaled = |factor: f64| {
+        let width = se / factor.sqrt() * t_upper_quantile(test.tail(), factor * df);
+        (width.is_finite() && factor * fruit as f64 >= 2.0).then_some(width)
+    };
+    let tested = kind != "mean" && name != "(Intercept)";
+    let detectable = se * detectable_effect(power, df, test);
+    AchievedEstimate {
+        detectable: Some(detectable).filter(|own| tested && own.is_finite()),
+        half_width_with_half: scaled(0.5),
+        half_width_with_twice: scaled(2.0),
+        kind,
+        name,
+        estimate,
+        se,
+        df,
+        half_width,
     }
 }
 
-fn estimates_of_means(means: &MeansOutcome, (test, power): (Test, f64)) -> Vec<AchievedEstimate> {
-    let of = |kind, name: String, estimate, (se, df): (f64, f64), (low, high): (f64, f64)| {
-        AchievedEstimate {
-            kind,
-            name,
-            estimate,
-            se,
-            df,
-            half_width: 0.5 * (high - low),
-            detectable: (kind != "mean").then(|| se * detectable_effect(power, df, test)),
-            half_width_with_half: None,
-            half_width_with_twice: None,
-        }
-    };
-    let own = means.means.iter().map(|mean| {
-        let name = mean.levels.join(", ");
-        of(
-            "mean",
-            name,
-            mean.mean,
-            (mean.se, mean.df),
-            (mean.low, mean.high),
-        )
+fn estimates(outcome: &MixedOutcome) -> Vec<Known> {
+    let terms = outcome.terms.iter().map(|term| Known {
+        kind: "coefficient",
+        name: term.name.clone(),
+        estimate: term.estimate,
+        se: term.se,
+        df: term.df,
+        half_width: 0.5 * (term.high - term.low),
     });
-    let pairs = means.differences.iter().map(|pair| {
-        let ends = (pair.low, pair.high);
-        let error = (pair.se, pair.df);
-        of(
-            "difference of means",
-            pair.pair.clone(),
-            pair.difference,
-            error,
-            ends,
-        )
+    let means = outcome.means.iter().flat_map(|means| &means.means);
+    let means = means.map(|mean| Known {
+        kind: "mean",
+        name: mean.levels.join(", "),
+        estimate: mean.mean,
+        se: mean.se,
+        df: mean.df,
+        half_width: 0.5 * (mean.high - mean.low),
     });
-    own.chain(pairs).collect()
+    let pairs = outcome.means.iter().flat_map(|means| &means.differences);
+    let pairs = pairs.map(|pair| Known {
+        kind: "difference of means",
+        name: pair.pair.clone(),
+        estimate: pair.difference,
+        se: pair.se,
+        df: pair.df,
+        half_width: 0.5 * (pair.high - pair.low),
+    });
+    terms.chain(means).chain(pairs).collect()
 }

@@ -8,9 +8,16 @@ use windfall_files::text::statistic::number;
 use windfall_files::text::table::findings_list;
 use windfall_tables::regress::mixed::VarianceOutcome;
 
-const ESTIMATES: [Column<AchievedEstimate>; 8] = [
-    ("", |own| own.kind.to_owned()),
-    ("of", |own| own.name.clone()),
+/// "V", "mean of Gala", "Gala - Fuji".
+fn name(own: &AchievedEstimate) -> String {
+    match own.kind {
+        "mean" => format!("mean of {}", own.name),
+        _ => own.name.clone(),
+    }
+}
+
+const ESTIMATES: [Column<AchievedEstimate>; 7] = [
+    ("of", name),
     ("estimate", |own| number(own.estimate)),
     ("df", |own| number(own.df)),
     ("half-width", |own| number(own.half_width)),
@@ -62,7 +69,7 @@ pub fn text_of_achieved(outcome: &AchievedOutcome) -> String {
         outcome.fruit,
         outcome.by,
         percent(outcome.confidence),
-        text_of_rows(&outcome.estimates, &ESTIMATES, &[0, 1]),
+        text_of_rows(&outcome.estimates, &ESTIMATES, &[0]),
         outcome.power,
         text_of_rows(&outcome.variances, &VARIANCES, &[0, 1, 2]),
         findings_list(&outcome.findings),

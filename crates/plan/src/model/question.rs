@@ -1,11 +1,11 @@
 //! A term of a mixed model as a question.
 
-use crate::model::simulate::{Found, Layout, Tested, layout};
+use crate::model::simulate::{Layout, Tested, layout};
 use crate::options::SimulationOptions;
-use crate::outcome::{PrecisionOutcome, simulated};
+use crate::outcome::simulated;
 use crate::question::{Count, Levels, Question, Size, Told};
+use crate::replicates::told_of;
 use crate::study::Study;
-use std::collections::BTreeMap;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
@@ -84,7 +84,13 @@ impl Question for ModelQuestion {
         let found = for_each(&quiet, simulations, |replicate| {
             layout.simulate(&self.tested, levels, (seed, replicate as u64))
         })?;
-        Ok(told_of(found))
+        let (good, told) = told_of(found, |own| own.interval);
+        let rejected = good.iter().filter(|own| own.rejected).count();
+        Ok(Told {
+            power: Some(simulated(rejected, simulations)),
+            singular: good.iter().filter(|own| own.singular).count(),
+            ..told
+        })
     }
 
     fn detectable(&self, _size: Size, _levels: &Levels, _power: f64) -> Option<f64> {
@@ -113,46 +119,5 @@ impl Question for ModelQuestion {
 
     fn findings(&self) -> Vec<FindingOutcome> {
         self.findings.clone()
-    }
-}
-
-/// Shares and means over the simulated studies; those that failed have found nothing.
-fn told_of(found: Vec<Result<Found, String>>) -> Told {
-    let simulations = found.len();
-    let mut failures: BTreeMap<String, usize> = BTreeMap::new();
-    let mut good: Vec<Found> = Vec::new();
-    for own in found {
-        match own {
-            Ok(found) => good.push(found),
-            Err(why) => *failures.entry(why).or_default() += 1,
-        }
-    }
-    let rejected = good.iter().filter(|own| own.rejected).count();
-    let intervals: Vec<(f64, bool)> = good.iter().filter_map(|own| own.interval).collect();
-    let n = intervals.len() as f64;
-    let mean = intervals.iter().map(|(half, _)| half).sum::<f64>() / n;
-    let squares: f64 = intervals
-        .iter()
-        .map(|(half, _)| (half - mean).powi(2))
-        .sum();
-    let holds = intervals.iter().filter(|(_, holds)| *holds).count();
-    let coverage = (!intervals.is_empty()).then(|| simulated(holds, intervals.len()));
-    Told {
-        power: Some(simulated(rejected, simulations)),
-        half_width: (!intervals.is_empty()).then_some(mean),
-        half_width_se: (intervals.len() > 1).then(|| (squares / (n - 1.0) / n).sqrt()),
-        simulations: Some(simulations),
-        failed: simulations - good.len(),
-        failures: failures.into_iter().collect(),
-        singular: good.iter().filter(|own| own.singular).count(),
-        also: coverage
-            .map(|share| PrecisionOutcome {
-                of: "coverage".to_owned(),
-                value: share.value,
-                se: share.se,
-            })
-            .into_iter()
-            .collect(),
-        df: None,
     }
 }

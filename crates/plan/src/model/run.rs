@@ -179,7 +179,7 @@ fn about(request: &ModelRequest, study: &Study, term: usize, coefficients: &[f64
         ),
         format!(
             "{} simulated studies of each size (seed {}), Satterthwaite's test at {}, {sides}; \
-             ± is the standard error of the simulation",
+             in brackets the 95 % interval of the simulation",
             request.simulation.simulations,
             request.simulation.seed,
             percent(1.0 - request.plan.confidence)

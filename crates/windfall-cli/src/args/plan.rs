@@ -4,7 +4,10 @@ use crate::args::format::Format;
 use clap::{Args, Subcommand};
 use windfall_plan::achieved::request::AchievedRequest;
 use windfall_plan::closed::request::{DifferenceRequest, GroupsRequest, MeanRequest, SlopeRequest};
+use windfall_plan::critical::request::CriticalRequest;
 use windfall_plan::model::request::ModelRequest;
+use windfall_plan::population::request::PopulationPlanRequest;
+use windfall_plan::surface::request::SurfacePlanRequest;
 
 /// `windfall plan`
 #[derive(Debug, Args)]
@@ -58,6 +61,19 @@ Examples:
   windfall plan model impacts.csv --formula 'k ~ V + (1 | fruit)' --effect V=-0.3 --power 0.9 --simulations 4000"
     )]
     Model(QuestionArguments<ModelRequest>),
+    /// The optimum of a response surface: the response there, and where it lies
+    #[command(after_help = "Examples:
+  windfall plan surface design.csv --coefficients 'A=1, A^2=-2, B^2=-1' --sd 0.5 --half-width 0.3
+  windfall plan surface runs.csv --response y --model quadratic --fruit 1,2,4")]
+    Surface(QuestionArguments<SurfacePlanRequest>),
+    /// A parameter of a population of laws: its median, and its spread between fruit
+    #[command(after_help = "Example:
+  windfall plan population law.toml --parameter k --half-width 0.05 --impacts 1,2,4")]
+    Population(QuestionArguments<PopulationPlanRequest>),
+    /// The critical impact energy, by simulation
+    #[command(after_help = "Example:
+  windfall plan critical-energy --median 0.12 --spread 0.3 --energies 0.05,0.1,0.2,0.4 --half-width 0.15")]
+    CriticalEnergy(QuestionArguments<CriticalRequest>),
     /// Look back: what a finished table has achieved, and what more or fewer fruit would have
     #[command(after_help = "Example:
   windfall plan achieved impacts.csv --formula 'k ~ V + variety + (1 | fruit)' --means variety")]
