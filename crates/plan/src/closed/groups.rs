@@ -31,10 +31,7 @@ impl GroupsQuestion {
         let scatter = &self.scatter.scatter;
         match (self.same_fruit, scatter.within()) {
             (true, Some(within)) => (within / m.sqrt(), k * m * n - n - k + 1.0),
-            _ => (
-                scatter.of_fruit_mean(0, size.impacts).powi(2),
-                k * (n - 1.0),
-            ),
+            _ => (scatter.of_fruit_mean(0, size.impacts), k * (n - 1.0)),
         }
     }
 }
