@@ -103,9 +103,8 @@ impl Layout {
         let said = |error: windfall_statistics::mixed::error::MixedError| error.to_string();
         let options = MixedOptions::default();
         let fit = fit_mixed(&y, &self.x, &self.names, &self.random, &options).map_err(said)?;
-        let lost = |own: &MixedFinding| matches!(own, MixedFinding::NoConvergence { .. });
-        if fit.findings.iter().any(lost) {
-            return Err("the fit did not converge".to_owned());
+        if let Some(why) = fit.findings.iter().find_map(lost) {
+            return Err(why.to_owned());
         }
         let singular = |own: &MixedFinding| matches!(own, MixedFinding::Singular { .. });
         let uncertainty = variance_uncertainty(&fit).map_err(said)?;
@@ -138,13 +137,17 @@ impl Layout {
     /// Whether the model can be fitted to this layout at all.
     pub fn is_estimable(&self) -> bool {
         let y = self.draw(0, 0);
-        fit_mixed(
-            &y,
-            &self.x,
-            &self.names,
-            &self.random,
-            &MixedOptions::default(),
-        )
-        .is_ok()
+        let options = MixedOptions::default();
+        let fit = fit_mixed(&y, &self.x, &self.names, &self.random, &options);
+        fit.is_ok_and(|fit| !fit.findings.iter().any(|own| lost(own).is_some()))
+    }
+}
+
+/// Why a fit tells nothing of its variances, and so nothing of the errors of its coefficients.
+fn lost(finding: &MixedFinding) -> Option<&'static str> {
+    match finding {
+        MixedFinding::NoConvergence { .. } => Some("the fit did not converge"),
+        MixedFinding::FlatCriterion { .. } => Some("the variances cannot be told apart"),
+        _ => None,
     }
 }

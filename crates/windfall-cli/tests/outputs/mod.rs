@@ -26,7 +26,7 @@ fn typed(line: &str) -> Vec<String> {
 }
 
 /// A folder with a fitted campaign, in which one recording is named by no impact, a
-/// recording beside it, tables, law cards, laws, a scene that has run, its study, and
+/// recording beside it, tables, a law card, laws, a scene that has run, its study, and
 /// dropped fruit.
 fn laboratory() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -51,15 +51,6 @@ fn laboratory() -> tempfile::TempDir {
     std::fs::write(
         path.join("fruit.csv"),
         "fruit,V,k\na,1,3\na,2,4.1\na,3,5\nb,1,4\nb,2,4.7\nb,3,6\nc,1,2\nc,2,3.3\nc,3,4\n",
-    )
-    .unwrap();
-    let card = std::fs::read_to_string(path.join("card.toml")).unwrap();
-    let population = "[population]\nof = [\"ln k\"]\nmedian = [753599.0]\n\
-                      between_fruit = [[0.04]]\nwithin_fruit = [[0.01]]\nfruit = 20\nimpacts = 80\n\
-                      method = \"test\"\n";
-    std::fs::write(
-        path.join("population.toml"),
-        format!("{card}\n{population}"),
     )
     .unwrap();
     made("new scene scene");

@@ -182,8 +182,8 @@ pub const WRITTEN: &[Output] = &[
         "plan population",
         "--figure",
         Kind::Picture,
-        "plan population population.toml --parameter k --fruit 4 --figure {}",
-        &["population.toml"],
+        "plan population card.toml --parameter k --within 0.05 --fruit 4 --figure {}",
+        &["card.toml"],
     ),
     (
         "plan critical-energy",
