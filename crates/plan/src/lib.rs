@@ -1,8 +1,9 @@
 //! `windfall plan`: how many fruit, and how many impacts on each.
 //!
-//! A [`question`](question::Question) says what a study of a size would tell; [`run`] looks for
-//! the smallest study that tells enough. Questions with an exact formula are in [`closed`],
-//! those that are simulated in [`model`]; [`achieved`] looks back on a finished campaign.
+//! A `Question` says what a study of a size would tell; `run` looks for the smallest study that
+//! tells enough. Questions with an exact formula are in [`closed`],
+//! those that are simulated in [`model`] and [`critical`]; [`achieved`] looks back on a finished
+//! campaign.
 
 pub mod achieved;
 pub mod closed;
