@@ -44,6 +44,10 @@ const ARROWS: &[(&str, &str)] = &[
         "scene-run",
         "campaign cards draw files scene identify contact statistics numerics",
     ),
+    (
+        "plan",
+        "tables cards draw files repeat signal statistics numerics",
+    ),
     ("engines", "scene-run files scene contact"),
     (
         "report",
@@ -63,7 +67,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "cli",
-        "web workspace engines scene-run report drop population simulate inspect measure campaign tables cards draw files",
+        "web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
     ),
     ("python", "windfall"),
     ("test-data", ""),

@@ -13,6 +13,7 @@ pub mod error;
 pub mod mixed;
 pub mod model;
 mod orthonormal;
+pub mod power;
 pub mod residuals;
 pub mod sample;
 pub mod sample_error;

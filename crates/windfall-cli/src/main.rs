@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         Command::Design(arguments) => command::design::run(&arguments),
         Command::Fit(arguments) => command::fit::run(&arguments),
         Command::Laws(arguments) => command::laws::run(&arguments),
+        Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Population(arguments) => command::population::run(&arguments),
         Command::Report(arguments) => command::report::run(&arguments),
         Command::Serve(arguments) => command::serve::run(&arguments),

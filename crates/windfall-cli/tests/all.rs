@@ -30,6 +30,7 @@ mod messages;
 mod on_table;
 mod outputs;
 mod page_quantities;
+mod plan;
 mod regress;
 mod relaxation;
 mod report;

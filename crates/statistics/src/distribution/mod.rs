@@ -3,7 +3,8 @@
 mod incomplete_beta;
 mod incomplete_gamma;
 pub mod largest_t;
-mod log_gamma_rest;
+pub(crate) mod log_gamma_rest;
+pub mod noncentral;
 pub mod quantile;
 pub mod studentized_range;
 pub mod tail;

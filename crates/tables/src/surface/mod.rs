@@ -1,7 +1,7 @@
 //! `windfall surface`: response surfaces and their optima.
 
 mod blocks;
-mod factors;
+pub mod factors;
 pub mod figure_contour;
 pub mod figure_effects;
 pub mod figure_heights;

@@ -9,6 +9,7 @@ use crate::args::fit::FitArguments;
 use crate::args::format::Format;
 use crate::args::geometry::{RadiusArguments, TransferArguments};
 use crate::args::laws::LawsArguments;
+use crate::args::plan::PlanArguments;
 use crate::args::population::PopulationArguments;
 use crate::args::regress::RegressArguments;
 use crate::args::report::ReportArguments;
@@ -72,6 +73,8 @@ pub enum Command {
     Serve(ServeArguments),
     /// Calibrate a contact law to dropped fruit: by features, and by design and surface
     Calibrate(CalibrateArguments),
+    /// Plan a study: how many fruit, and how many impacts on each
+    Plan(Box<PlanArguments>),
     /// Make a design of experiments
     Design(Box<DesignArguments>),
     /// Simulate one event from a force law

@@ -22,7 +22,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ("Simulation", &["simulate", "scene", "bruise"]),
     (
         "Tables and statistics",
-        &["design", "regress", "surface", "compare", "summary"],
+        &["plan", "design", "regress", "surface", "compare", "summary"],
     ),
     ("Shell", &["completions"]),
     ("Help", &["help"]),

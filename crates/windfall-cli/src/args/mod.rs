@@ -11,6 +11,7 @@ pub(crate) mod format;
 pub mod geometry;
 pub mod groups;
 pub mod laws;
+pub mod plan;
 pub mod population;
 pub mod regress;
 pub mod report;

@@ -13,6 +13,7 @@ pub(crate) mod geometry;
 pub(crate) mod inspect;
 pub(crate) mod laws;
 pub mod new;
+pub(crate) mod plan;
 pub(crate) mod population;
 pub(crate) mod regress;
 pub(crate) mod report;

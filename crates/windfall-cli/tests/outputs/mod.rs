@@ -26,7 +26,7 @@ fn typed(line: &str) -> Vec<String> {
 }
 
 /// A folder with a fitted campaign, in which one recording is named by no impact, a
-/// recording beside it, a table, a law card, laws, a scene that has run, its study, and
+/// recording beside it, tables, a law card, laws, a scene that has run, its study, and
 /// dropped fruit.
 fn laboratory() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -46,6 +46,11 @@ fn laboratory() -> tempfile::TempDir {
     std::fs::write(
         path.join("design.csv"),
         "A,B,y\n0,0,1\n1,0,2\n0,1,3\n1,1,5\n0,0.5,2\n1,0.5,4\n",
+    )
+    .unwrap();
+    std::fs::write(
+        path.join("fruit.csv"),
+        "fruit,V,k\na,1,3\na,2,4.1\na,3,5\nb,1,4\nb,2,4.7\nb,3,6\nc,1,2\nc,2,3.3\nc,3,4\n",
     )
     .unwrap();
     made("new scene scene");

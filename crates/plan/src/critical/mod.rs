@@ -1,0 +1,5 @@
+//! The critical impact energy, by simulation.
+
+mod question;
+pub mod request;
+pub mod run;

@@ -1,0 +1,104 @@
+//! What is asked of a study: what one of a size would tell.
+
+use crate::outcome::{PrecisionOutcome, ShareOutcome};
+use windfall_files::error::Error;
+use windfall_files::found::FindingOutcome;
+use windfall_statistics::power::{Sides, Test};
+
+/// Size of a study.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Size {
+    /// Fruit, in each group where there are groups.
+    pub fruit: usize,
+    /// Impacts on each fruit.
+    pub impacts: usize,
+}
+
+/// What a study takes in all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Count {
+    pub fruit: usize,
+    pub impacts: usize,
+}
+
+/// Levels of tests and intervals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels {
+    pub confidence: f64,
+    pub sides: Sides,
+    /// Probability that the half-width is kept; its mean where there is none.
+    pub assurance: Option<f64>,
+}
+
+impl Levels {
+    /// The test at 1 - confidence.
+    pub fn test(&self) -> Test {
+        Test {
+            alpha: 1.0 - self.confidence,
+            sides: self.sides,
+        }
+    }
+}
+
+/// What a study of one size tells.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Told {
+    /// Probability of finding the effect, where one is asked for.
+    pub power: Option<ShareOutcome>,
+    /// Half-width of the interval, where there is one.
+    pub half_width: Option<f64>,
+    /// Error of a simulated half-width.
+    pub half_width_se: Option<f64>,
+    /// Degrees of freedom, where a closed form has them.
+    pub df: Option<f64>,
+    /// Simulated studies, where there are any.
+    pub simulations: Option<usize>,
+    /// Those that could not be evaluated.
+    pub failed: usize,
+    /// Why, and how often.
+    pub failures: Vec<(String, usize)>,
+    /// Those in which a variance was estimated as zero.
+    pub singular: usize,
+    /// Further precisions.
+    pub also: Vec<PrecisionOutcome>,
+}
+
+/// A question that a study is to answer.
+pub(crate) trait Question: Sync {
+    /// "mean", "difference" …
+    fn name(&self) -> &'static str;
+    /// What is asked, what is assumed and how it is calculated; a line each.
+    fn about(&self) -> Vec<String>;
+    /// What `Size::fruit` counts: "fruit", "fruit in each group".
+    fn counted(&self) -> &'static str;
+    /// Impacts on each fruit where none are asked for.
+    fn usual_impacts(&self) -> usize {
+        1
+    }
+    /// Fewest fruit that answer it at all with so many impacts on each.
+    ///
+    /// # Errors
+    /// The number of impacts cannot be used.
+    fn fewest(&self, impacts: usize) -> Result<usize, Error>;
+    /// What a study of a size takes in all.
+    fn count(&self, size: Size) -> Count;
+    /// What a study of a size tells.
+    ///
+    /// # Errors
+    /// Nothing can be told of this size.
+    fn told(&self, size: Size, levels: &Levels) -> Result<Told, Error>;
+    /// Smallest effect that is found with a power.
+    fn detectable(&self, size: Size, levels: &Levels, power: f64) -> Option<f64>;
+    /// Whether an effect is stated, so that there is a power.
+    fn has_effect(&self) -> bool;
+    /// Whether intervals have a half-width with an assurance.
+    fn has_assurance(&self) -> bool;
+    /// The option that states the effect.
+    fn effect_option(&self) -> &'static str;
+    /// What half-widths are of.
+    fn half_width_of(&self) -> &'static str;
+    /// Whether it is cheap enough to be asked for every point of a curve.
+    fn is_closed_form(&self) -> bool;
+    /// What a reader must know whatever the size.
+    fn findings(&self) -> Vec<FindingOutcome>;
+}
