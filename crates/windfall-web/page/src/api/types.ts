@@ -97,7 +97,8 @@ export interface DesignWayOutcome {
   depth: DepthOutcome | null;
 }
 export interface DifferenceOutcome {
-  pair: string; difference: number; se: number; df: number; t: number; p: number; low: number; high: number;
+  within: string[]; contrast: string; difference: number; se: number; df: number; t: number; p: number; low: number;
+  high: number; ratio: OnScale | null;
 }
 export interface DirectionOutcome { parts: Record<string, number>; sd: number | null; words: string; }
 export interface DropOutcome {
@@ -108,6 +109,7 @@ export interface EnergyOutcome {
   kinetic: number; rotational: number; potential: number; in_contacts: number; in_friction: number;
   lost_in_contacts: number; lost_by_friction: number; lost_by_drag: number; done_by_walls: number;
 }
+export interface EqualityOutcome { within: string[]; f: number; df: number; df_denominator: number; p: number; }
 export interface EstimateOutcome {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string; held: boolean;
 }
@@ -217,10 +219,12 @@ export interface LiveOutcome {
 }
 export interface MassOutcome { value: number; sd: number; impacts: number; }
 export interface MeanOutcome {
-  levels: string[]; mean: number; se: number; df: number; low: number; high: number;
+  levels: string[]; mean: number; se: number; df: number; low: number; high: number; original: OnScale | null;
 }
 export interface MeansOutcome {
-  of: string[]; at: [string, number][]; means: MeanOutcome[]; adjusted: string; differences: DifferenceOutcome[];
+  slope_on: string | null; of: string[]; within: string[]; at: [string, number][]; means: MeanOutcome[];
+  original: string | null; meaning: string | null; compared: string; adjusted: string; differences: DifferenceOutcome[];
+  tests: EqualityOutcome[];
 }
 export interface MeasuredGroup {
   group: string | null; law: string; recordings: number; values: Record<string, SpreadOutcome>;
@@ -247,7 +251,7 @@ export type MixedOutcome = RowCount & ({
 export interface MixedPrediction {
   population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
 }
-export type MixedPredictionOutcome = MixedPrediction & { line: number; };
+export type MixedPredictionOutcome = MixedPrediction & ({ line: number; original: OriginalPrediction | null; });
 export type MixedTest = AnovaOutcome & { df_denominator: number; };
 export interface MixingOutcome { r_hat: number | null; bulk_draws: number; tail_draws: number; }
 export interface ModelRange { column: string; low: number; high: number; }
@@ -256,10 +260,14 @@ export interface ModelResiduals {
 }
 export interface NewCampaign { id: string; kind: string; }
 export interface NextOutcome { interest: string; now: (number | null)[]; candidates: CandidateOutcome[]; }
+export interface OnScale { value: number | null; low: number | null; high: number | null; }
 export interface OptionsGiven {
   laws?: string[] | null; free?: string[] | null; quantities?: string[] | null; weights?: string | null;
   noise?: string | null; intervals?: string | null; onset?: string | null; initial_velocity?: string | null;
   displacement_offset?: string | null; end?: string | null; group?: string | null;
+}
+export interface OriginalPrediction {
+  predicted: number | null; mean_low: number | null; mean_high: number | null; low: number | null; high: number | null;
 }
 export interface Outline {
   channel: string; unit: string | null; timed: boolean; start: number; end: number; samples: number; shown: number;
@@ -304,7 +312,7 @@ export interface PredictedResponse {
 export interface Prediction {
   predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
 }
-export type PredictionOutcome = Prediction & { line: number; };
+export type PredictionOutcome = Prediction & ({ line: number; original: OriginalPrediction | null; });
 export interface Problem { title: string; status: number; detail: string; code: string; }
 export interface ProfileOutcome { values: number[]; rises: number[]; open?: string | null; }
 export interface QualityOutcome {
