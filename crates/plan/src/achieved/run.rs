@@ -57,7 +57,7 @@ fn regressed(request: &AchievedRequest) -> Result<Box<MixedOutcome>, Error> {
         formula: Some(request.formula.clone()),
         after: MeansRequest {
             means: request.means.clone(),
-            adjust: Some(Adjust::None),
+            adjust: (!request.means.is_empty()).then_some(Adjust::None),
             ..MeansRequest::default()
         },
         confidence: request.confidence,
