@@ -170,6 +170,16 @@ fn rejects_means_that_cannot_be_estimated() {
         (FRUIT, &["--means", "dose", "--at", "v=x"], "and its value"),
         (
             FRUIT,
+            &["--means", "dose", "--at", "v=1", "--at", "v=2"],
+            "held at another value",
+        ),
+        (
+            FRUIT,
+            &["--means", "dose", "--compare", "=1,-1"],
+            "a name of its own",
+        ),
+        (
+            FRUIT,
             &["--means", "variety", "--compare", "control=none"],
             "no row has it in variety: there are Fuji, Gala, Idared",
         ),
@@ -367,4 +377,35 @@ fn reference_contrasts_with_a_control_slopes_and_ratios() {
         let found = own["p"].as_f64().unwrap();
         assert!((found - p).abs() < 5e-5, "{own}");
     }
+}
+
+/// An end that no value leads to is open, and no sign is made up.
+#[test]
+fn detects_responses_that_do_not_lead_back() {
+    let means = |formula: &str| {
+        let found = json(FRUIT, &["--formula", formula, "--means", "dose"]);
+        found["means"][0].clone()
+    };
+    let open = means("exp(-8*v) ~ dose");
+    let own = &open["means"][0];
+    let (low, value) = (own["low"].as_f64().unwrap(), own["mean"].as_f64().unwrap());
+    assert!(low < 0.0, "{own}");
+    close(&own["original"]["value"], -value.ln() / 8.0, 1e-12);
+    let high = own["high"].as_f64().unwrap();
+    close(&own["original"]["low"], -high.ln() / 8.0, 1e-12);
+    assert_eq!(own["original"]["high"], Value::Null);
+    // Squares of both signs.
+    assert_eq!(means("(v - 0.3)^2 ~ dose")["original"], Value::Null);
+    let line = means("k * 1000 ~ dose");
+    assert_eq!(line["meaning"], "k of a mean of k * 1000 is its mean");
+}
+
+/// Fits without noise are said to be so, and end.
+#[test]
+fn detects_exact_fits() {
+    let table = "a,y\np,1\np,1\np,1\nq,2\nq,2\nq,2\nr,4\nr,4\nr,4\n";
+    let found = json(table, &["--formula", "y ~ a", "--means", "a"]);
+    let codes = found["findings"].as_array().unwrap().iter();
+    assert!(codes.map(|own| &own["code"]).any(|own| own == "exact-fit"));
+    assert_eq!(found["means"][0]["means"][2]["mean"], 4.0);
 }

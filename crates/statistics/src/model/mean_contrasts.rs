@@ -174,12 +174,12 @@ pub fn compared(
         Adjustment::MultivariateT if contrasts.len() > 1 => LargestT::of_covariance(covariance),
         _ => None,
     };
-    // Degrees of freedom are mostly one number.
+    // Degrees of freedom are mostly one number, and so are critical values.
     let mut known: Vec<(f64, f64)> = Vec::new();
-    let mut critical_of = |largest: &LargestT, df: f64| {
+    let mut critical_of = |df: f64, find: &dyn Fn(f64) -> f64| {
         let found = known.iter().find(|own| own.0 == df);
         found.map(|own| own.1).unwrap_or_else(|| {
-            let critical = largest.upper_quantile(tail, df);
+            let critical = find(df);
             known.push((df, critical));
             critical
         })
@@ -190,11 +190,14 @@ pub fn compared(
         let (p, critical) = match (adjustment, &largest) {
             (Adjustment::Tukey, _) if means > 2 => (
                 studentized_range_upper(SQRT_2 * t.abs(), means, own.df),
-                studentized_range_upper_quantile(tail, means, own.df) / SQRT_2,
+                critical_of(own.df, &|df| {
+                    studentized_range_upper_quantile(tail, means, df) / SQRT_2
+                }),
             ),
-            (Adjustment::MultivariateT, Some(largest)) => {
-                (largest.upper(t.abs(), own.df), critical_of(largest, own.df))
-            }
+            (Adjustment::MultivariateT, Some(largest)) => (
+                largest.upper(t.abs(), own.df),
+                critical_of(own.df, &|df| largest.upper_quantile(tail, df)),
+            ),
             (Adjustment::Holm, _) => {
                 let level = tail / contrasts.len() as f64;
                 (single, t_upper_quantile(0.5 * level, own.df))

@@ -1,6 +1,8 @@
 //! From the scale of a model back to that of what was measured: `log(k)` to `k`.
 
+use crate::model::expression::values;
 use crate::model::formula_syntax::{Kind, Node, Operator, spelling};
+use crate::table::Table;
 
 /// How a transformed response leads back to the column that it was made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +29,23 @@ enum Step {
 }
 
 impl OriginalScale {
-    /// Of a response; `None` where it is a column as it is, or cannot be undone.
-    pub fn of(response: &Node) -> Option<Self> {
+    /// Of a response; `None` where it is a column as it is, or cannot be undone in every row: a
+    /// square of values of both signs does not tell their signs.
+    ///
+    /// * `table`: rows that were modelled
+    pub fn of(response: &Node, table: &Table) -> Option<Self> {
+        let scale = Self::written(response)?;
+        let transformed = values(response, table).ok()?;
+        let own = table.numbers(&scale.column).ok()?;
+        let leads_back = |(own, transformed): (&f64, &f64)| {
+            own.is_nan() || (scale.value(*transformed) - own).abs() <= 1e-6 * own.abs()
+        };
+        let mut rows = own.iter().zip(&transformed);
+        rows.all(leads_back).then_some(scale)
+    }
+
+    /// Of a response as it is written.
+    fn written(response: &Node) -> Option<Self> {
         let mut steps = Vec::new();
         let column = undo(response, &mut steps)?;
         (!steps.is_empty()).then_some(Self { column, steps })
@@ -36,14 +53,23 @@ impl OriginalScale {
 
     /// A value on the scale of the column; NaN for one that no value of the column leads to.
     pub fn value(&self, transformed: f64) -> f64 {
-        self.steps
-            .iter()
-            .fold(transformed, |own, step| step.undone(own))
+        let steps = self.steps.iter();
+        steps.fold(transformed, |own, step| {
+            step.undone(own).unwrap_or(f64::NAN)
+        })
     }
 
-    /// An interval there, its lower end first.
-    pub fn interval(&self, low: f64, high: f64) -> (f64, f64) {
-        let (low, high) = (self.value(low), self.value(high));
+    /// An interval there, its lower end first. An end that no value of the column leads to is
+    /// where these values end, which may be infinite; NaN unless one leads to `centre`.
+    pub fn interval(&self, centre: f64, (low, high): (f64, f64)) -> (f64, f64) {
+        if self.value(centre).is_nan() {
+            return (f64::NAN, f64::NAN);
+        }
+        let end = |end: f64| {
+            let steps = self.steps.iter();
+            steps.fold(end, |own, step| step.undone(own).unwrap_or(step.limit()))
+        };
+        let (low, high) = (end(low), end(high));
         match low > high {
             true => (high, low),
             false => (low, high),
@@ -54,24 +80,36 @@ impl OriginalScale {
     pub fn is_logarithm(&self) -> bool {
         matches!(self.steps[..], [Step::Log { shift: 0.0, .. }])
     }
+
+    /// Whether the response is a straight line of the column, of which means are means.
+    fn is_line(&self) -> bool {
+        self.steps.iter().all(|own| matches!(own, Step::Line(..)))
+    }
 }
 
 impl Step {
-    fn undone(&self, value: f64) -> f64 {
+    /// `None` for a value that this calculation never has.
+    fn undone(&self, value: f64) -> Option<f64> {
         match *self {
-            Self::Log { base, shift } => match base == std::f64::consts::E {
+            Self::Log { base, shift } => Some(match base == std::f64::consts::E {
                 true if shift == 1.0 => value.exp_m1(),
                 true => value.exp() - shift,
                 false => base.powf(value) - shift,
-            },
-            Self::Exp => value.ln(),
-            // An interval that reaches below zero ends at zero.
-            Self::Power(power) => value.max(0.0).powf(power.recip()),
-            Self::Line(start, slope) => (value - start) / slope,
-            Self::Inverse(above) => match value / above > 0.0 {
-                true => above / value,
-                false => f64::INFINITY,
-            },
+            }),
+            Self::Exp => (value > 0.0).then(|| value.ln()),
+            Self::Power(power) => (value >= 0.0).then(|| value.powf(power.recip())),
+            Self::Line(start, slope) => Some((value - start) / slope),
+            Self::Inverse(above) => (value / above > 0.0).then(|| above / value),
+        }
+    }
+
+    /// What is undone where the values of this calculation end.
+    fn limit(&self) -> f64 {
+        match *self {
+            Self::Exp => f64::NEG_INFINITY,
+            Self::Power(power) if power < 0.0 => f64::INFINITY,
+            Self::Inverse(_) => f64::INFINITY,
+            _ => 0.0,
         }
     }
 }
@@ -149,6 +187,7 @@ pub fn meaning(scale: &OriginalScale, response: &Node) -> String {
             "{column} of a mean of {response} is the geometric mean of {column}, its median where \
              {response} is normal, and lies below its mean; differences of {response} are ratios"
         ),
+        false if scale.is_line() => format!("{column} of a mean of {response} is its mean"),
         false => format!(
             "{column} of a mean of {response} is the median of {column} where {response} is \
              normal, not its mean"
@@ -160,6 +199,7 @@ pub fn meaning(scale: &OriginalScale, response: &Node) -> String {
 mod tests {
     use super::*;
     use crate::model::formula_syntax::parse;
+    use crate::table::{Cells, Column};
 
     #[test]
     fn closed_form_values_lead_back() {
@@ -176,7 +216,7 @@ mod tests {
             ("1 / k", |k| 1.0 / k),
             ("3 - k / 2", |k| 3.0 - k / 2.0),
         ] {
-            let scale = OriginalScale::of(&parse(text).unwrap()).unwrap();
+            let scale = OriginalScale::written(&parse(text).unwrap()).unwrap();
             assert_eq!(scale.column, "k");
             for k in [0.2, 1.0, 3.7] {
                 let found = scale.value(forward(k));
@@ -184,16 +224,47 @@ mod tests {
             }
         }
         for text in ["k", "k + v", "k * v", "abs(k)", "sin(k)", "2"] {
-            assert_eq!(OriginalScale::of(&parse(text).unwrap()), None, "{text}");
+            assert_eq!(
+                OriginalScale::written(&parse(text).unwrap()),
+                None,
+                "{text}"
+            );
         }
     }
 
     #[test]
     fn closed_form_intervals_stay_in_order_and_in_range() {
-        let scale = |text: &str| OriginalScale::of(&parse(text).unwrap()).unwrap();
-        assert_eq!(scale("1 / k").interval(0.5, 2.0), (0.5, 2.0));
-        assert_eq!(scale("1 / k").interval(-0.5, 2.0), (0.5, f64::INFINITY));
-        assert_eq!(scale("sqrt(k)").interval(-0.5, 2.0), (0.0, 4.0));
+        let scale = |text: &str| OriginalScale::written(&parse(text).unwrap()).unwrap();
+        let infinite = f64::INFINITY;
+        assert_eq!(scale("1 / k").interval(1.0, (0.5, 2.0)), (0.5, 2.0));
+        assert_eq!(scale("1 / k").interval(1.0, (-0.5, 2.0)), (0.5, infinite));
+        assert_eq!(scale("sqrt(k)").interval(1.0, (-0.5, 2.0)), (0.0, 4.0));
+        let (low, high) = scale("exp(-k)").interval(0.5, (-0.1, 1.0));
+        assert_eq!((low, high), (0.0, infinite));
+        // No root is negative.
+        assert!(scale("sqrt(k)").value(-1.0).is_nan());
+        assert!(scale("sqrt(k)").interval(-1.0, (-2.0, 4.0)).0.is_nan());
         assert!(scale("log10(k)").is_logarithm() && !scale("log1p(k)").is_logarithm());
+    }
+
+    /// Squares and inverses of values of both signs lead to none of them.
+    #[test]
+    fn detects_responses_that_cannot_be_undone() {
+        let table = |cells: &[f64]| Table {
+            columns: vec![Column {
+                name: "k".to_owned(),
+                cells: Cells::Numbers(cells.to_vec()),
+            }],
+        };
+        let both = table(&[-1.0, 2.0]);
+        let positive = table(&[0.5, 2.0, f64::NAN]);
+        for text in ["k^2", "1 / k", "k^3", "(1 - k)^2"] {
+            let node = parse(text).unwrap();
+            assert_eq!(OriginalScale::of(&node, &both), None, "{text}");
+        }
+        for text in ["k^2", "1 / k", "k^3", "log(k)"] {
+            let node = parse(text).unwrap();
+            assert!(OriginalScale::of(&node, &positive).is_some(), "{text}");
+        }
     }
 }

@@ -128,7 +128,7 @@ pub fn text_of_compare(outcome: &CompareOutcome) -> String {
     let mut text = heading(&outcome.value, &outcome.count) + "\n\n";
     text += &page_tables(&header, &rows.collect::<Vec<_>>(), &left);
     text += &format!(
-        "\n\nfrom, to: {} interval of the mean; groups that share a letter do not differ\n",
+        "\n\nfrom, to: {} interval of the mean; groups that share a letter were not found to differ\n",
         percent(outcome.confidence)
     );
     text += &tests_text(outcome);

@@ -126,7 +126,7 @@ pub fn draw_groups(own: &GroupPlot) -> DrawnGroups {
         });
     }
     if shown.iter().any(|group| !group.letters.is_empty()) {
-        notes.push("Groups that share a letter do not differ.".to_owned());
+        notes.push("Groups that share a letter were not found to differ.".to_owned());
     }
     let up = range_of(shown, &drawn);
     let longest = shown.iter().map(|group| group.name.chars().count()).max();

@@ -18,6 +18,9 @@ use windfall_statistics::table::Table;
 /// Variance inflation that is reported (Montgomery, Peck & Vining, Linear Regression, §9.4.2).
 const INFLATED: f64 = 10.0;
 
+/// Residuals below this share of the response's sum of squares are rounding.
+const EXACT: f64 = 1e-24;
+
 /// Condition beyond which digits are lost.
 const ILL_CONDITIONED: f64 = 1e7;
 
@@ -206,6 +209,14 @@ pub(crate) fn fit_findings(
         found.push(finding(
             "saturated",
             "there are as many coefficients as rows: nothing is left to tell their errors".into(),
+        ));
+    }
+    if fit.residual_df > 0 && fit.residual_ss <= EXACT * fit.total_ss {
+        found.push(finding(
+            "exact-fit",
+            "the model describes the response but for rounding: its standard errors, tests and \
+             probabilities say nothing"
+                .to_owned(),
         ));
     }
     if fit.condition > ILL_CONDITIONED {

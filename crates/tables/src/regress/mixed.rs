@@ -35,11 +35,12 @@ use windfall_statistics::mixed::term::RandomTerm;
 use windfall_statistics::model::anova::AnovaRow;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
-use windfall_statistics::model::formula_syntax::{Node, spelling};
+use windfall_statistics::model::formula_syntax::spelling;
 use windfall_statistics::model::mean_contrasts::JointTest;
 use windfall_statistics::model::model_frame::{
     ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
 };
+use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
 use windfall_statistics::model::reduced::{Aliased, reduce};
 
@@ -104,6 +105,8 @@ pub fn regress_mixed(
     findings.extend(own.chain(profile_findings));
     let (means, not_estimable) = means(request, data, (formula, &kept), inferred)?;
     findings.extend(not_estimable);
+    let scale = formula.response.as_ref();
+    let scale = scale.and_then(|response| OriginalScale::of(response, &chosen.table));
     let shares = variance_shares(&fitted.fit);
     let fit = &fitted.fit;
     Ok(MixedOutcome {
@@ -139,7 +142,7 @@ pub fn regress_mixed(
         bic: fit.bic,
         removed: Vec::new(),
         effects: effects(&fitted),
-        predictions: predictions(request, formula.response.as_ref(), &fitted, &uncertainty)?,
+        predictions: predictions(request, scale.as_ref(), &fitted, &uncertainty)?,
         means,
         findings,
     })
@@ -404,7 +407,7 @@ fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
 
 fn predictions(
     request: &RegressRequest,
-    response: Option<&Node>,
+    scale: Option<&OriginalScale>,
     fitted: &Fitted,
     uncertainty: &VarianceUncertainty,
 ) -> Result<Vec<MixedPredictionOutcome>, Error> {
@@ -425,7 +428,7 @@ fn predictions(
             line,
             prediction,
             original: original_prediction(
-                response,
+                scale,
                 prediction.predicted,
                 (prediction.mean_low, prediction.mean_high),
                 (prediction.low, prediction.high),

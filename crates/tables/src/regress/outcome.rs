@@ -5,7 +5,6 @@ use windfall_files::text::columns::{Column, text_of_rows};
 use windfall_files::text::statistic::number;
 use windfall_statistics::model::expression::columns_of;
 use windfall_statistics::model::formula::Formula;
-use windfall_statistics::model::formula_syntax::Node;
 use windfall_statistics::model::linear_model::Prediction;
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::residuals::diagnostics::RowInfluence;
@@ -108,14 +107,14 @@ pub struct OriginalPrediction {
 ///
 /// * `mean`, `measurement`: their intervals on the scale of the model
 pub(crate) fn original_prediction(
-    response: Option<&Node>,
+    scale: Option<&OriginalScale>,
     predicted: f64,
     mean: (f64, f64),
     measurement: (f64, f64),
 ) -> Option<OriginalPrediction> {
-    let scale = OriginalScale::of(response?)?;
-    let (mean_low, mean_high) = scale.interval(mean.0, mean.1);
-    let (low, high) = scale.interval(measurement.0, measurement.1);
+    let scale = scale?;
+    let (mean_low, mean_high) = scale.interval(predicted, mean);
+    let (low, high) = scale.interval(predicted, measurement);
     Some(OriginalPrediction {
         predicted: scale.value(predicted),
         mean_low,

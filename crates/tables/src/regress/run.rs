@@ -25,12 +25,15 @@ use windfall_files::write_file::check_outputs;
 use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
-use windfall_statistics::model::formula_syntax::{Node, spelling};
+use windfall_statistics::model::formula_syntax::spelling;
 use windfall_statistics::model::linear_model::{
     LinearFit, Quality, WholeModel, fit_reduced, predict,
 };
 use windfall_statistics::model::mean_contrasts::joint_test;
-use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
+use windfall_statistics::model::model_frame::{
+    ModelRows, chosen_rows, model_rows, prediction_rows,
+};
+use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::reduced::{Reduced, reduce_written};
 use windfall_statistics::model::selection::{Selection, select};
 use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, cross_validate};
@@ -259,6 +262,10 @@ fn outcome(
     findings.extend(lack_finding(lack_of_fit.as_ref()));
     let (means, not_estimable) = means(request, data, formula, rows, fit)?;
     findings.extend(not_estimable);
+    let scale = formula
+        .response
+        .as_ref()
+        .and_then(|response| OriginalScale::of(response, &chosen_rows(&data.table, &rows.kept)));
     let residuals = residual_tests(rows, fit);
     findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {
@@ -290,7 +297,7 @@ fn outcome(
         fold_by: request.fold_by.clone(),
         residuals,
         influence: rows_of(influence, &lines),
-        predictions: predictions(request, formula.response.as_ref(), rows, fit)?,
+        predictions: predictions(request, scale.as_ref(), rows, fit)?,
         means,
         findings,
     })
@@ -408,7 +415,7 @@ fn means(
 
 fn predictions(
     request: &RegressRequest,
-    response: Option<&Node>,
+    scale: Option<&OriginalScale>,
     rows: &ModelRows,
     fit: &LinearFit,
 ) -> Result<Vec<PredictionOutcome>, Error> {
@@ -422,7 +429,7 @@ fn predictions(
         .map(|(prediction, &line)| PredictionOutcome {
             line,
             original: original_prediction(
-                response,
+                scale,
                 prediction.mean,
                 (prediction.mean_low, prediction.mean_high),
                 (prediction.low, prediction.high),

@@ -111,11 +111,17 @@ impl MeansRequest {
             let value: f64 = value.trim().parse().ok()?;
             value.is_finite().then(|| (column.trim().to_owned(), value))
         };
-        let held = self.at.iter().map(|text| {
+        let mut held: Vec<(String, f64)> = Vec::new();
+        for text in &self.at {
+            let wrong = |problem: &str| unusable(format!("--at '{text}'"), problem);
             let expected = "expected a column of numbers and its value: V=0.5";
-            one(text).ok_or_else(|| unusable(format!("--at '{text}'"), expected))
-        });
-        held.collect()
+            let own = one(text).ok_or_else(|| wrong(expected))?;
+            if held.iter().any(|(column, _)| *column == own.0) {
+                return Err(wrong("the column is held at another value, too"));
+            }
+            held.push(own);
+        }
+        Ok(held)
     }
 
     /// Which means are compared.
@@ -165,7 +171,11 @@ impl MeansRequest {
                     "weights of a comparison sum to 0, these to {sum}"
                 )));
             }
-            custom.push((name.trim().to_owned(), numbers));
+            let name = name.trim();
+            if name.is_empty() || custom.iter().any(|(own, _)| own == name) {
+                return Err(wrong("a sum needs a name of its own before the ="));
+            }
+            custom.push((name.to_owned(), numbers));
         }
         Ok(match custom.is_empty() {
             true => Which::Pairs,

@@ -107,7 +107,7 @@ impl Asking<'_> {
         let scale = match columns.slope {
             Some(_) => None,
             None => self.model.response.and_then(|response| {
-                let scale = OriginalScale::of(response)?;
+                let scale = OriginalScale::of(response, self.table)?;
                 Some((meaning(&scale, response), scale))
             }),
         };
@@ -378,8 +378,8 @@ fn families<'a>(columns: &Columns, rows: &'a MarginalRows) -> Vec<Family<'a>> {
     found
 }
 
-fn on_scale(scale: &OriginalScale, value: f64, (low, high): (f64, f64)) -> OnScale {
-    let (low, high) = scale.interval(low, high);
+fn on_scale(scale: &OriginalScale, value: f64, ends: (f64, f64)) -> OnScale {
+    let (low, high) = scale.interval(value, ends);
     OnScale {
         value: scale.value(value),
         low,
