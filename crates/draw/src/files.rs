@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::inputs::check_output;
 use windfall_files::provenance::digest_text;
-use windfall_files::write_file::{make_directory, write_whole};
+use windfall_files::write_file::{check_target, make_directory, write_whole};
 
 /// Where figures go and which colours they have.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -83,6 +83,7 @@ pub fn write_figures(
     folder: &FigureFolder,
     figures: &[&NamedFigure],
 ) -> Result<Vec<PathBuf>, Error> {
+    check_paths(folder, figures.iter().map(|own| own.name.as_str()))?;
     let write = |named: &&NamedFigure| write_figure(folder, &named.name, &named.figure);
     let written: Result<Vec<Vec<PathBuf>>, Error> = figures.par_iter().map(write).collect();
     Ok(written?.into_iter().flatten().collect())
@@ -93,6 +94,7 @@ pub fn write_paintings(
     folder: &FigureFolder,
     paintings: &[Painting],
 ) -> Result<Vec<PathBuf>, Error> {
+    check_paths(folder, paintings.iter().map(|own| own.name.as_str()))?;
     let write = |p: &Painting| write_drawing(folder, &p.name, &p.drawing, &p.csv);
     let written: Result<Vec<Vec<PathBuf>>, Error> = paintings.par_iter().map(write).collect();
     Ok(written?.into_iter().flatten().collect())
@@ -100,6 +102,20 @@ pub fn write_paintings(
 
 /// Endings of the files of a figure: data, dots, vectors.
 const ENDINGS: [&str; 3] = ["csv", "png", "svg"];
+
+/// Refuses names of which one may not be written, before any of them is.
+fn check_paths<'a>(
+    folder: &FigureFolder,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<(), Error> {
+    for name in names {
+        let name = file_name(name);
+        for ending in ENDINGS {
+            check_target(&folder.directory.join(format!("{name}.{ending}")))?;
+        }
+    }
+    Ok(())
+}
 
 fn write_drawing(
     folder: &FigureFolder,

@@ -484,3 +484,29 @@ fn closed_form_large_tables_are_thinned() {
     });
     assert_eq!(drawn.count(), 24);
 }
+
+/// A figure that was changed since is not replaced, nor is any beside it.
+#[test]
+fn conserves_all_figures_where_one_was_changed() {
+    let folder = drawn(
+        &fruit(),
+        &["regress", "t.csv", "--formula", "k ~ V", "--folds", "0"],
+    );
+    let path = |name: &str| folder.path().join("figures").join(name);
+    let before = text(&folder, "diagnostics.csv");
+    std::fs::write(path("effects.csv"), "mine\n").unwrap();
+    let arguments = [
+        "regress",
+        "t.csv",
+        "--formula",
+        "k ~ V + variety",
+        "--folds",
+        "0",
+    ];
+    let mut command = Command::cargo_bin("windfall").unwrap();
+    let command = command.args(arguments).args(["--figures", "figures"]);
+    let output = command.current_dir(folder.path()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(text(&folder, "effects.csv"), "mine\n");
+    assert_eq!(text(&folder, "diagnostics.csv"), before);
+}
