@@ -409,3 +409,19 @@ fn detects_exact_fits() {
     assert!(codes.map(|own| &own["code"]).any(|own| own == "exact-fit"));
     assert_eq!(found["means"][0]["means"][2]["mean"], 4.0);
 }
+
+/// `v` runs from 0.1 to 0.6.
+#[test]
+fn detects_means_outside_of_the_rows() {
+    for (at, outside) in [("v=0.6", false), ("v=0.61", true)] {
+        let formula = ["--formula", "k ~ dose + v", "--means", "dose", "--at", at];
+        let found = json(FRUIT, &formula);
+        let mut codes = found["findings"].as_array().unwrap().iter();
+        let told = codes.find(|own| own["code"] == "extrapolated");
+        assert_eq!(told.is_some(), outside, "{at}");
+        if let Some(told) = told {
+            let message = told["message"].as_str().unwrap();
+            assert!(message.contains("v (rows have 0.1"), "{message}");
+        }
+    }
+}

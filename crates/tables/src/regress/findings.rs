@@ -1,9 +1,10 @@
 //! What a reader of a linear model must know.
 
-use crate::regress::outcome::StepOutcome;
+use crate::regress::outcome::{RangeOutcome, StepOutcome};
 use crate::rows::{GroupLoss, RowCount, lines_text};
 use std::collections::BTreeMap;
 use windfall_files::found::FindingOutcome;
+use windfall_files::table::data::Data;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::probability;
 use windfall_statistics::model::anova::LackOfFit;
@@ -34,6 +35,43 @@ const LACKING: f64 = 0.05;
 /// A finding.
 pub fn finding(code: &str, message: String) -> FindingOutcome {
     FindingOutcome::new(code, message)
+}
+
+/// Means and predictions outside of the rows that the model was fitted to.
+///
+/// * `held`: columns with the value at which means are taken
+/// * `asked`: the table that is predicted
+pub(crate) fn extrapolated(
+    ranges: &[RangeOutcome],
+    held: &[(String, f64)],
+    asked: Option<&Data>,
+) -> Option<FindingOutcome> {
+    let outside = |range: &RangeOutcome| {
+        let beyond = |value: &f64| *value < range.low || *value > range.high;
+        let column = asked.and_then(|own| own.table.numbers(&range.column).ok());
+        let predicted = column.is_some_and(|own| own.iter().any(beyond));
+        let at = held.iter().filter(|own| own.0 == range.column);
+        predicted || at.map(|own| &own.1).any(beyond)
+    };
+    let told = ranges.iter().filter(|own| outside(own)).map(|own| {
+        format!(
+            "{} (rows have {} to {})",
+            own.column,
+            plain(own.low),
+            plain(own.high)
+        )
+    });
+    let told: Vec<String> = told.collect();
+    (!told.is_empty()).then(|| {
+        finding(
+            "extrapolated",
+            format!(
+                "means or predictions lie outside of the rows in {}: the model says nothing of \
+                 how the response goes on there",
+                told.join(", ")
+            ),
+        )
+    })
 }
 
 /// Rows with missing cells.

@@ -2,7 +2,7 @@
 
 use crate::figures::effects::{EffectModel, effects_painting};
 use crate::regress::findings::{
-    aliased_findings, code_findings, finding, left_out_finding, row_count,
+    aliased_findings, code_findings, extrapolated, finding, left_out_finding, row_count,
 };
 use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::means::run::{Model, means_of};
@@ -105,6 +105,12 @@ pub fn regress_mixed(
     findings.extend(own.chain(profile_findings));
     let (means, not_estimable) = means(request, data, (formula, &kept), inferred)?;
     findings.extend(not_estimable);
+    let (asked, ranges) = (request.asked()?, ranges_of(formula, &data.table, &kept));
+    findings.extend(extrapolated(
+        &ranges,
+        &request.after.held()?,
+        asked.as_ref(),
+    ));
     let scale = formula.response.as_ref();
     let scale = scale.and_then(|response| OriginalScale::of(response, &chosen.table));
     let shares = variance_shares(&fitted.fit);
@@ -128,7 +134,7 @@ pub fn regress_mixed(
             .collect(),
         terms,
         covariance: fit.covariance_rows(),
-        ranges: ranges_of(formula, &data.table, &kept),
+        ranges,
         anova,
         variances,
         r2: shares.r2_marginal,
@@ -142,7 +148,12 @@ pub fn regress_mixed(
         bic: fit.bic,
         removed: Vec::new(),
         effects: effects(&fitted),
-        predictions: predictions(request, scale.as_ref(), &fitted, &uncertainty)?,
+        predictions: predictions(
+            (request, asked.as_ref()),
+            scale.as_ref(),
+            &fitted,
+            &uncertainty,
+        )?,
         means,
         findings,
     })
@@ -406,15 +417,14 @@ fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
 }
 
 fn predictions(
-    request: &RegressRequest,
+    (request, asked): (&RegressRequest, Option<&Data>),
     scale: Option<&OriginalScale>,
     fitted: &Fitted,
     uncertainty: &VarianceUncertainty,
 ) -> Result<Vec<MixedPredictionOutcome>, Error> {
-    let Some(path) = &request.predict else {
+    let Some(asked) = asked else {
         return Ok(Vec::new());
     };
-    let asked = request.reading.read(path)?;
     let x = prediction_rows(&fitted.rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let rows = NewRows {
         x: x.select_columns(&fitted.columns),

@@ -6,6 +6,8 @@ use crate::reading::ReadingOptions;
 use crate::regress::means::request::MeansRequest;
 use std::path::PathBuf;
 use windfall_draw::files::FigureFolder;
+use windfall_files::error::Error;
+use windfall_files::table::data::Data;
 
 pub use windfall_statistics::mixed::fit::MixedMethod;
 pub use windfall_statistics::model::anova::AnovaType;
@@ -145,6 +147,15 @@ impl RegressRequest {
             figures: None,
             reading: ReadingOptions::default(),
         }
+    }
+
+    /// The table that is to be predicted, if there is one.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub(crate) fn asked(&self) -> Result<Option<Data>, Error> {
+        let path = self.predict.as_deref();
+        path.map(|path| self.reading.read(path)).transpose()
     }
 
     /// How terms are selected, if they are.

@@ -2,8 +2,8 @@
 
 use crate::regress::figures::draw_linear;
 use crate::regress::findings::{
-    aliased_findings, code_findings, finding, fit_findings, lack_finding, left_out_finding,
-    row_count,
+    aliased_findings, code_findings, extrapolated, finding, fit_findings, lack_finding,
+    left_out_finding, row_count,
 };
 use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::means::run::{Model, means_of};
@@ -227,24 +227,7 @@ fn outcome(
         true => robust_coefficients(fit, &rows.x),
         false => fit.coefficients.clone(),
     };
-    let units = units_of(request, data, rows)?;
-    let validation = (request.folds > 0)
-        .then(|| {
-            let parts = Parts {
-                folds: request.folds,
-                seed: request.seed,
-                units: units.as_deref(),
-            };
-            cross_validate(
-                &rows.frame,
-                &rows.x,
-                &rows.y,
-                &selection.terms,
-                request.selection().as_ref(),
-                parts,
-            )
-        })
-        .flatten();
+    let validation = validated(request, data, rows, selection)?;
     let mut findings = left_out_finding(&rows.left_out, &data.lines);
     findings.extend(data.left_out_finding());
     findings.extend(code_findings(&rows.frame, &data.table));
@@ -262,6 +245,15 @@ fn outcome(
     findings.extend(lack_finding(lack_of_fit.as_ref()));
     let (means, not_estimable) = means(request, data, formula, rows, fit)?;
     findings.extend(not_estimable);
+    let (asked, ranges) = (
+        request.asked()?,
+        ranges_of(formula, &data.table, &rows.kept),
+    );
+    findings.extend(extrapolated(
+        &ranges,
+        &request.after.held()?,
+        asked.as_ref(),
+    ));
     let scale = formula
         .response
         .as_ref()
@@ -278,7 +270,7 @@ fn outcome(
             true => robust_covariance_rows(fit, &rows.x),
             false => fit.covariance_rows(),
         },
-        ranges: ranges_of(formula, &data.table, &rows.kept),
+        ranges,
         quality: fit.quality(&rows.y),
         model: fit.whole(),
         residual: fit.residual(),
@@ -297,10 +289,37 @@ fn outcome(
         fold_by: request.fold_by.clone(),
         residuals,
         influence: rows_of(influence, &lines),
-        predictions: predictions(request, scale.as_ref(), rows, fit)?,
+        predictions: predictions(asked.as_ref(), scale.as_ref(), rows, fit)?,
         means,
         findings,
     })
+}
+
+/// How the model predicts rows that it was not fitted to, where that is asked.
+fn validated(
+    request: &RegressRequest,
+    data: &Data,
+    rows: &ModelRows,
+    selection: &Selection,
+) -> Result<Option<CrossValidation>, Error> {
+    let units = units_of(request, data, rows)?;
+    if request.folds == 0 {
+        return Ok(None);
+    }
+    let parts = Parts {
+        folds: request.folds,
+        seed: request.seed,
+        units: units.as_deref(),
+    };
+    let (x, terms, options) = (&rows.x, &selection.terms, request.selection());
+    Ok(cross_validate(
+        &rows.frame,
+        x,
+        &rows.y,
+        terms,
+        options.as_ref(),
+        parts,
+    ))
 }
 
 /// Unit of each row for cross-validation, from 0 without gaps.
@@ -414,15 +433,14 @@ fn means(
 }
 
 fn predictions(
-    request: &RegressRequest,
+    asked: Option<&Data>,
     scale: Option<&OriginalScale>,
     rows: &ModelRows,
     fit: &LinearFit,
 ) -> Result<Vec<PredictionOutcome>, Error> {
-    let Some(path) = &request.predict else {
+    let Some(asked) = asked else {
         return Ok(Vec::new());
     };
-    let asked = request.reading.read(path)?;
     let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
     let found = predict(fit, &x).into_iter().zip(&asked.lines);
     Ok(found
