@@ -425,3 +425,25 @@ fn detects_means_outside_of_the_rows() {
         }
     }
 }
+
+/// A column far from zero, in models of either kind.
+#[test]
+fn detects_columns_far_from_zero() {
+    let mut table = "g,x,y\n".to_owned();
+    for row in 0..24 {
+        let x = 1e8 + f64::from(row * 7 % 24);
+        let y = f64::from(row % 4) + 0.1 * f64::from(row * row % 7);
+        table += &format!("g{},{x},{y}\n", row % 4);
+    }
+    for random in [&[][..], &["--random", "g"]] {
+        let found = on_table::json(
+            &table,
+            &[&["regress", "t.csv", "--formula", "y ~ x"], random].concat(),
+        );
+        let mut codes = found["findings"].as_array().unwrap().iter();
+        assert!(
+            codes.any(|own| own["code"] == "ill-conditioned"),
+            "{random:?}"
+        );
+    }
+}

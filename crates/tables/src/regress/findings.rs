@@ -37,6 +37,19 @@ pub fn finding(code: &str, message: String) -> FindingOutcome {
     FindingOutcome::new(code, message)
 }
 
+/// Columns that nearly depend on each other.
+pub(crate) fn condition_finding(condition: f64) -> Option<FindingOutcome> {
+    (condition > ILL_CONDITIONED).then(|| {
+        finding(
+            "ill-conditioned",
+            format!(
+                "columns are dependent but for 1 part in {}: centre the columns, or use poly( )",
+                plain(condition)
+            ),
+        )
+    })
+}
+
 /// Means and predictions outside of the rows that the model was fitted to.
 ///
 /// * `held`: columns with the value at which means are taken
@@ -257,15 +270,7 @@ pub(crate) fn fit_findings(
                 .to_owned(),
         ));
     }
-    if fit.condition > ILL_CONDITIONED {
-        found.push(finding(
-            "ill-conditioned",
-            format!(
-                "columns are dependent but for 1 part in {}: centre the columns, or use poly( )",
-                plain(fit.condition)
-            ),
-        ));
-    }
+    found.extend(condition_finding(fit.condition));
     let inflated: Vec<String> = vif
         .iter()
         .filter(|v| v.df == 1 && v.factor > INFLATED)

@@ -2,7 +2,8 @@
 
 use crate::figures::effects::{EffectModel, effects_painting};
 use crate::regress::findings::{
-    aliased_findings, code_findings, extrapolated, finding, left_out_finding, row_count,
+    aliased_findings, code_findings, condition_finding, extrapolated, finding, left_out_finding,
+    row_count,
 };
 use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::means::run::{Model, means_of};
@@ -47,6 +48,7 @@ use windfall_statistics::model::reduced::{Aliased, reduce};
 struct Fitted {
     rows: ModelRows,
     aliased: Vec<Aliased>,
+    condition: f64,
     columns: Vec<usize>,
     terms: Vec<FramedTerm>,
     fit: MixedFit,
@@ -100,6 +102,7 @@ pub fn regress_mixed(
     findings.extend(data.left_out_finding());
     findings.extend(code_findings(&fitted.rows.frame, &data.table));
     findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
+    findings.extend(condition_finding(fitted.condition));
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
     findings.extend(own.chain(profile_findings));
@@ -122,10 +125,7 @@ pub fn regress_mixed(
             MixedMethod::Reml => "REML",
             MixedMethod::MaximumLikelihood => "ML",
         },
-        df_method: match adjusted {
-            None => "Satterthwaite",
-            Some(_) => "Kenward-Roger",
-        },
+        df_method: adjusted.map_or("Satterthwaite", |_| "Kenward-Roger"),
         count: row_count(&fitted.rows.frame, &data.table, &left_out),
         groups: fitted
             .terms
@@ -273,7 +273,7 @@ fn fit(
     let terms = random_terms(formula, &data.table, contrast).map_err(told)?;
     let every: Vec<usize> = (0..rows.x.ncols()).collect();
     let solved = reduce(&rows.x, &rows.y).solve(&every);
-    let (columns, aliased) = (solved.columns, solved.aliased);
+    let (columns, aliased, condition) = (solved.columns, solved.aliased, solved.condition);
     let names: Vec<String> = columns
         .iter()
         .map(|c| rows.frame.names[*c].clone())
@@ -288,6 +288,7 @@ fn fit(
     Ok(Fitted {
         rows,
         aliased,
+        condition,
         columns,
         terms,
         fit,
