@@ -80,6 +80,10 @@ pub(crate) trait Question: Sync {
     /// # Errors
     /// The number of impacts cannot be used.
     fn fewest(&self, impacts: usize) -> Result<usize, Error>;
+    /// Fruit come in multiples of this number.
+    fn step(&self) -> usize {
+        1
+    }
     /// What a study of a size takes in all.
     fn count(&self, size: Size) -> Count;
     /// What a study of a size tells.

@@ -251,6 +251,43 @@ fn closed_form_of_what_was_achieved() {
     assert!(found.get("observed_power").is_none());
 }
 
+/// Without means there are the coefficients of `windfall regress` alone.
+#[test]
+fn conserves_what_was_achieved_without_means() {
+    let formula = "'k ~ V + (1 | fruit)'";
+    let found = json(&impacts(), &format!("achieved t.csv --formula {formula}"));
+    let regress = format!("regress t.csv --formula {formula}");
+    let regress = on_table::json(&impacts(), &words(&regress));
+    let (own, terms) = (
+        found["estimates"].as_array().unwrap(),
+        regress["terms"].as_array().unwrap(),
+    );
+    assert_eq!(own.len(), terms.len());
+    for (own, term) in own.iter().zip(terms) {
+        assert_eq!(own["kind"], "coefficient");
+        assert_eq!(own["se"], term["se"]);
+    }
+}
+
+/// Values of x that every so many fruit have equally often: R 4.2.2, noncentral t in `pt`, with
+/// Sxx = n · 8.25 of ten fruit, 2 · 82.5 of twenty.
+#[test]
+fn conserves_the_values_of_x() {
+    let line = "slope --slope 0.3 --x 1,2,3,4,5,6,7,8,9,10 --sd 1";
+    assert_eq!(row(&format!("{line} --power 0.6"))["fruit"], 10);
+    assert_eq!(row(&format!("{line} --power 0.8"))["fruit"], 20);
+    assert_eq!(
+        row(&format!("{line} --power 0.8 --fruit 5..60"))["fruit"],
+        20
+    );
+    let listed = json("", &format!("{line} --fruit 5..35"));
+    let fruit = listed["rows"].as_array().unwrap().iter();
+    let fruit: Vec<u64> = fruit.map(|row| row["fruit"].as_u64().unwrap()).collect();
+    assert_eq!(fruit, [10, 20, 30]);
+    let paid = row(&format!("{line} --cost-fruit 1 --budget 39"));
+    assert_eq!(paid["fruit"], 30);
+}
+
 /// Scatter from a table is that of its mixed model.
 #[test]
 fn conserves_the_scatter_of_a_table() {
@@ -428,6 +465,18 @@ fn rejects_what_cannot_be_planned() {
         (
             "slope --slope 1 --x 2,2 --sd 1 --fruit 9",
             "x has one value",
+        ),
+        (
+            "slope --x 1,2,3,4,5,6,7,8,9,10 --sd 1 --fruit 24",
+            "--fruit: 24 fruit cannot have the 10 values of --x equally often: 20 and 30 are the",
+        ),
+        (
+            "slope --x 1,2,3,4 --sd 1 --fruit 5..7",
+            "--fruit: 5 fruit cannot have the 4 values of --x equally often: 4 and 8 are the",
+        ),
+        (
+            "slope --x 1,2,3,4 --sd 1 --fruit 3",
+            "--fruit: 3 fruit cannot tell how much fruit differ: at least 4 are needed",
         ),
         (
             "slope --slope 1 --x 1,2 --sd 1 --fruit 9 --same-fruit",

@@ -199,7 +199,7 @@ pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
             )
         }
         false => (
-            Estimate::Slope { spread },
+            Estimate::Slope { spread, values },
             "a property of the fruit",
             "t test of the regression of the means of fruit",
         ),

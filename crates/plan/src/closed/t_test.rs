@@ -33,6 +33,8 @@ pub(crate) enum Estimate {
     Slope {
         /// Standard deviation of x (denominator n).
         spread: f64,
+        /// Number of values of x, each on as many fruit as the others, where they are stated.
+        values: Option<usize>,
     },
     /// Slope on what changes between the impacts of every fruit.
     SlopeOnFruit {
@@ -106,7 +108,7 @@ impl TQuestion {
                 (Some(w), None) => (w * (2.0 / (m * n)).sqrt(), 2.0 * m * n - n - 1.0),
                 (Some(w), Some(sd)) => (sd.hypot(w * (2.0 / m).sqrt()) / n.sqrt(), n - 1.0),
             },
-            Estimate::Slope { spread } => (own / (n.sqrt() * spread), n - 2.0),
+            Estimate::Slope { spread, .. } => (own / (n.sqrt() * spread), n - 2.0),
             Estimate::SlopeOnFruit {
                 spread, effect_sd, ..
             } => {
@@ -160,6 +162,13 @@ impl Question for TQuestion {
             }
             _ => 2,
         })
+    }
+
+    fn step(&self) -> usize {
+        match self.estimate {
+            Estimate::Slope { values, .. } => values.unwrap_or(1),
+            _ => 1,
+        }
     }
 
     fn count(&self, size: Size) -> Count {
