@@ -39,7 +39,8 @@ fn impacts() -> String {
 }
 
 /// Expected: R 4.2.2, `power.t.test(…, strict = TRUE)`, `power.anova.test`'s formula by mpmath
-/// (R's `pf` is off by 1e-9), noncentral t in `pt` for slopes, and `integrate` over the two
+/// (R's `pf` is off by 1e-9), noncentral t in `pt` for slopes (over `dchisq` by `integrate` where x
+/// is drawn), and `integrate` over the two
 /// variances for Welch's test.
 #[test]
 fn reference_power_of_r() {
@@ -89,7 +90,7 @@ fn reference_power_of_r() {
         ),
         (
             "slope --slope 0.02 --spread-x 8 --sd 0.3 --fruit 20",
-            0.616680353494,
+            0.578473344269,
         ),
         (
             "slope --slope -0.4 --x 0.1,0.3,0.5 --same-fruit --impacts 6 --between 0.2 --within 0.1 --fruit 5",
@@ -115,6 +116,12 @@ fn reference_half_widths_of_r() {
     for (line, expected) in [
         ("mean --sd 12 --fruit 10", 8.34958234679),
         ("mean --sd 12 --fruit 10 --assurance 0.9", 10.9647787985),
+        ("slope --spread-x 8 --sd 0.3 --fruit 5", 0.06890198366),
+        ("slope --spread-x 8 --sd 0.3 --fruit 30", 0.01451672111),
+        (
+            "slope --spread-x 8 --sd 0.3 --fruit 30 --assurance 0.9",
+            0.01818095596,
+        ),
         ("difference --sd 1,2 --fruit 10 --ratio 1.5", 1.24621021977),
         (
             "difference --sd 1,2 --fruit 10 --ratio 1.5 --assurance 0.9",

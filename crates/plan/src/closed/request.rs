@@ -108,7 +108,8 @@ pub struct SlopeRequest {
         )
     )]
     pub x: Option<String>,
-    /// Standard deviation of x in the study, where its values are not known
+    /// Standard deviation of x, where its values are not chosen: x as they fall, normal with this
+    /// standard deviation; with --same-fruit that of the x of every fruit
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "SD", allow_negative_numbers = true)

@@ -208,7 +208,10 @@ pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
         .map(|effect| format!(" of {}", plain(effect)))
         .unwrap_or_default();
     let mut about = vec![
-        format!("slope{of} on {on}; SD of x {}", plain(spread)),
+        format!(
+            "slope{of} on {on}; {}",
+            words_of_x(spread, values, request.same_fruit)
+        ),
         scatter.words.clone(),
     ];
     if let Some(sd) = request.effect_sd {
@@ -223,6 +226,15 @@ pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
         about,
     };
     plan(&question, &request.plan)
+}
+
+/// "SD of x 8, x as they fall".
+fn words_of_x(spread: f64, values: Option<usize>, same_fruit: bool) -> String {
+    let spread = plain(spread);
+    match (values, same_fruit) {
+        (None, false) => format!("x as they fall, normal with a standard deviation of {spread}"),
+        _ => format!("SD of x {spread}"),
+    }
 }
 
 fn needs_within(scatter: &KnownScatter) -> Result<(), Error> {
