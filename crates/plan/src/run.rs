@@ -235,12 +235,13 @@ fn choose(asked: &Asked, rows: &mut [PlanRow]) -> Option<FindingOutcome> {
         _ => paid.reduce(|a, b| if cost(b) < cost(a) { b } else { a }),
     };
     let Some(best) = best.cloned() else {
+        let of = match rows.iter().any(|row| row.reached.is_some()) {
+            true => "none of the studies tried that tell enough: the cheapest of them",
+            false => "none of the studies tried: the cheapest",
+        };
         return Some(FindingOutcome::new(
             "over-budget",
-            format!(
-                "the budget pays for no study that tells enough: the cheapest costs {}",
-                plain(cheapest)
-            ),
+            format!("the budget pays for {of} costs {}", plain(cheapest)),
         ));
     };
     let same = |row: &&mut PlanRow| row.fruit == best.fruit && row.impacts == best.impacts;

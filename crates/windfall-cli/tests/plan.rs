@@ -193,6 +193,12 @@ fn closed_form_budgets() {
     assert_eq!(best, [false, true, false, false]);
     let poor = json("", &format!("{line} --power 0.8"));
     assert_eq!(poor["findings"][0]["code"], "over-budget");
+    let found = json("", "mean --sd 1 --fruit 50,60 --cost-fruit 4 --budget 100");
+    let text = found["findings"][0]["message"].as_str().unwrap();
+    assert_eq!(
+        text,
+        "the budget pays for none of the studies tried: the cheapest costs 200.0"
+    );
     let (_, csv, _) = on_table::run("", &words(&format!("plan {line} --format csv")));
     assert!(csv.starts_with("impacts,fruit,fruit_in_all,"), "{csv}");
     assert_eq!(csv.lines().count(), 5);
@@ -210,6 +216,13 @@ fn repeats_simulations_for_any_number_of_threads() {
     assert_ne!(
         one["rows"],
         json(&impacts(), &format!("{line} --seed 2"))["rows"]
+    );
+    // the order of the columns of a term means nothing
+    let term =
+        "model t.csv --formula 'k ~ V * variety + (1 | fruit)' --fruit 12 --simulations 50 --term";
+    assert_eq!(
+        json(&impacts(), &format!("{term} V:variety"))["rows"],
+        json(&impacts(), &format!("{term} variety:V"))["rows"]
     );
     let power = &one["rows"][0]["power"];
     assert!(power["low"].as_f64().unwrap() < power["value"].as_f64().unwrap());
@@ -350,6 +363,17 @@ fn closed_form_precision_of_a_surface() {
     let moved = found["rows"][0]["also"][0]["value"].as_f64().unwrap();
     assert!((moved / 0.049 - 1.0).abs() < 0.1, "{moved}");
     assert_eq!(found["rows"][0]["also"][2]["value"], 0.0);
+    // an optimum at A = 5: the response is that at the centre, and there is no place
+    let found = json(&design, &line.replace("'A^2=-1", "'A=10,A^2=-1"));
+    assert_eq!(found["findings"][0]["code"], "no-optimum");
+    assert_eq!(
+        found["half_width_of"],
+        "half-width of the response at the centre"
+    );
+    let about = found["about"][0].as_str().unwrap();
+    assert!(about.contains("centre, 0 at A 0, B 0"), "{about}");
+    assert_eq!(found["rows"][0]["also"], Value::Array(Vec::new()));
+    close(&found["rows"][0]["half_width"], 1.70407763676, 1e-9);
 }
 
 #[test]
@@ -533,6 +557,22 @@ fn rejects_what_cannot_be_planned() {
         (
             "model t.csv --formula 'k ~ V + (1 | fruit)' --fruit 4 --simulations 1",
             "--simulations: 1 is not between",
+        ),
+        (
+            "model t.csv --formula 'k ~ V + (1 | fruit)' --effect V=1e300 --fruit 4",
+            "--effect V=1e300: the effect is too large",
+        ),
+        (
+            "model t.csv --formula 'k ~ V + (1 | fruit)' --effect V=1 --effect V=2 --fruit 4",
+            "--effect V=2: V is stated twice",
+        ),
+        (
+            "difference --sd 1 --difference 1 --fruit 4 --same-fruit --pooled",
+            "--same-fruit",
+        ),
+        (
+            "critical-energy --median 1 --spread 1 --energies 1 --half-width 0.2",
+            "--energies 1: too few: one energy",
         ),
         (
             "achieved t.csv --formula 'k ~ V'",

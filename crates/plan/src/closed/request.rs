@@ -42,7 +42,10 @@ pub struct DifferenceRequest {
     )]
     pub ratio: f64,
     /// One variance for both groups with --sd (Student's t test), in place of Welch's
-    #[cfg_attr(feature = "clap", arg(long, requires = "sd"))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, requires = "sd", conflicts_with = "same_fruit")
+    )]
     pub pooled: bool,
     /// Every fruit gets both treatments, --impacts of each; --sd is then that of the differences
     #[cfg_attr(feature = "clap", arg(long))]

@@ -83,6 +83,10 @@ fn estimate_of_difference(
     scatter: &Scatter,
 ) -> Result<(Estimate, &'static str), Error> {
     if request.same_fruit {
+        if request.pooled {
+            let problem = "with --same-fruit there is one group of fruit: leave it out";
+            return Err(unusable("--pooled", problem));
+        }
         if let Some(sd) = request.effect_sd {
             positive("--effect-sd", sd)?;
         }
