@@ -58,7 +58,7 @@ pub(crate) fn plan(question: &dyn Question, options: &PlanOptions) -> Result<Pla
     if let Some(path) = &options.figure {
         let figure = figure_of_plan(&outcome);
         let svg = svg_of_figure(&figure, options.theme.colours());
-        write_plot(path, svg, &csv_of_figure(&figure)?)?;
+        write_plot("--figure", path, svg, &csv_of_figure(&figure)?)?;
     }
     Ok(outcome)
 }

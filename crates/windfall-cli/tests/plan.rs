@@ -261,6 +261,12 @@ fn closed_form_of_what_was_achieved() {
         variety["detectable"]
     );
     close(&row(&line)["power"]["value"], 0.8, 1e-6);
+    // half of twelve fruit: 6 - 2 degrees of freedom; qt(0.975, 4) and qt(0.975, 22) of R
+    let se = variety["se"].as_f64().unwrap();
+    let half = 2.776445105198 * se * 2f64.sqrt();
+    close(&variety["half_width_with_half"], half, 1e-6);
+    let twice = 2.073873067904 * se / 2f64.sqrt();
+    close(&variety["half_width_with_twice"], twice, 1e-6);
     let difference = found["estimates"].as_array().unwrap().last().unwrap();
     close(
         &difference["half_width"],
@@ -269,6 +275,24 @@ fn closed_form_of_what_was_achieved() {
     );
     // no power of what was found (Hoenig and Heisey 2001)
     assert!(found.get("observed_power").is_none());
+}
+
+/// One fruit of each level: fruit and levels are one.
+#[test]
+fn rejects_a_campaign_that_tells_no_variance() {
+    let mut table = "fruit,g,V,k\n".to_owned();
+    for (fruit, g) in ["a", "b", "c"].iter().enumerate() {
+        for (v, error) in [(1, 0.1), (2, -0.2), (3, 0.15)] {
+            table += &format!(
+                "f{fruit},{g},{v},{}\n",
+                v as f64 * 2.0 + error * (fruit + 1) as f64
+            );
+        }
+    }
+    let line = words("plan achieved t.csv --formula 'k ~ V + g + (1 | fruit)'");
+    let (status, _, told) = on_table::run(&table, &line);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("variances cannot be told apart"), "{told}");
 }
 
 /// Without means there are the coefficients of `windfall regress` alone.
@@ -573,6 +597,10 @@ fn rejects_what_cannot_be_planned() {
         (
             "critical-energy --median 1 --spread 1 --energies 1 --half-width 0.2",
             "--energies 1: too few: one energy",
+        ),
+        (
+            "mean --sd 1 --fruit 4 --figure plan.gif",
+            "--figure plan.gif: figures are written as SVG or PNG",
         ),
         (
             "achieved t.csv --formula 'k ~ V'",
