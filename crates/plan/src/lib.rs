@@ -20,6 +20,7 @@ mod replicates;
 mod run;
 pub mod scatter;
 mod search;
+mod simulated;
 mod sizes;
 mod study;
 pub mod surface;

@@ -7,6 +7,7 @@ use crate::outcome::{PlanOutcome, PlanRow};
 use crate::parse::Fruit;
 use crate::question::{Question, Size, Told};
 use crate::search::{Goal, smallest, told};
+use crate::simulated::{coverage_findings, failed_findings};
 use crate::sizes::{Sizes, sizes, stepped_over};
 use crate::text::impacts_text;
 use windfall_draw::plot::write_plot;
@@ -34,7 +35,8 @@ pub(crate) fn plan(question: &dyn Question, options: &PlanOptions) -> Result<Pla
     let mut findings = question.findings();
     findings.extend(missed(question, &asked, &rows)?);
     findings.extend(choose(&asked, &mut rows));
-    findings.extend(simulated_findings(&rows));
+    findings.extend(failed_findings(&rows));
+    findings.extend(coverage_findings(&rows, &looked_at, &asked.levels));
     let curve = match question.is_closed_form() {
         true => curve(question, &asked, &rows)?,
         false => looked_at,
@@ -114,7 +116,7 @@ fn row(
         impacts_in_all: count.impacts,
         detectable: detectable.flatten().filter(|value| value.is_finite()),
         cost,
-        reached: asked.goal.reached(&told),
+        reached: asked.goal.reached(&told, &asked.levels),
         within_budget: cost.zip(budget).map(|(cost, budget)| cost <= budget),
         best: false,
         power: told.power,
@@ -249,31 +251,4 @@ fn choose(asked: &Asked, rows: &mut [PlanRow]) -> Option<FindingOutcome> {
         row.best = true;
     }
     None
-}
-
-/// Simulated studies that failed.
-fn simulated_findings(rows: &[PlanRow]) -> Vec<FindingOutcome> {
-    let failed = rows.iter().filter(|row| row.failed > 0);
-    let finding = |row: &PlanRow| {
-        let causes = row.failures.iter();
-        let causes: Vec<String> = causes
-            .map(|(why, count)| format!("{count}: {why}"))
-            .collect();
-        let so = match row.power {
-            Some(_) => "and count as not having found the effect",
-            None => "and are left out of the mean, which is not told where they are many",
-        };
-        FindingOutcome::new(
-            "simulations-failed",
-            format!(
-                "{} fruit with {}: {} of {} simulated studies could not be evaluated {so} ({})",
-                row.fruit,
-                impacts_text(row.impacts),
-                row.failed,
-                row.simulations.unwrap_or_default(),
-                causes.join("; ")
-            ),
-        )
-    };
-    failed.map(finding).collect()
 }

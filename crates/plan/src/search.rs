@@ -17,7 +17,11 @@ pub(crate) enum Goal {
 
 impl Goal {
     /// Whether a study tells enough; none where nothing is wanted or it has no such number.
-    pub fn reached(self, told: &Told) -> Option<bool> {
+    /// Intervals that miss the truth too often tell nothing.
+    pub fn reached(self, told: &Told, levels: &Levels) -> Option<bool> {
+        if self != Self::Open && levels.is_missed(told) {
+            return Some(false);
+        }
         match self {
             Self::Open => None,
             Self::Power(wanted) => told.power.map(|power| power.value >= wanted),
@@ -67,7 +71,7 @@ pub(crate) fn smallest(
         let fruit = steps * step;
         let size = Size { fruit, impacts };
         let told = told(question, size, levels)?;
-        let reached = goal.reached(&told) == Some(true);
+        let reached = goal.reached(&told, levels) == Some(true);
         studies.push((size, told));
         Ok(reached)
     };

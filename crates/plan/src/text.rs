@@ -78,6 +78,18 @@ fn columns(outcome: &PlanOutcome) -> Vec<Cell<'_>> {
         };
         columns.push((of.to_owned(), Box::new(cell)));
     }
+    let share = |of: fn(&PlanRow) -> usize| {
+        move |row: &PlanRow| {
+            let all = row.simulations.unwrap_or_default().max(1);
+            percent((1000.0 * of(row) as f64 / all as f64).round() / 1000.0)
+        }
+    };
+    if any(&|row| row.failed > 0) {
+        columns.push(("failed".into(), Box::new(share(|row| row.failed))));
+    }
+    if any(&|row| row.singular > 0) {
+        columns.push(("singular".into(), Box::new(share(|row| row.singular))));
+    }
     if any(&|row| row.cost.is_some()) {
         columns.push((
             "cost".into(),

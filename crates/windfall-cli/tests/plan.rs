@@ -277,6 +277,15 @@ fn closed_form_of_what_was_achieved() {
     assert!(found.get("observed_power").is_none());
 }
 
+/// Missing words are those that the options name.
+#[test]
+fn conserves_the_reading_of_a_table_of_scatter() {
+    let line = "mean --from t.csv --formula 'k ~ V + (1 | fruit)' --fruit 6 --impacts 3";
+    let table = impacts() + "f0,Fuji,0.9,lost\n";
+    let found = json(&table, &format!("{line} --missing lost"));
+    assert_eq!(found["rows"], json(&impacts(), line)["rows"]);
+}
+
 /// One fruit of each level: fruit and levels are one.
 #[test]
 fn rejects_a_campaign_that_tells_no_variance() {

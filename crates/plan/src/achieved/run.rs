@@ -40,8 +40,9 @@ pub fn achieved(request: &AchievedRequest) -> Result<AchievedOutcome, Error> {
     let lost = lost.filter(|own| matches!(own, MixedFinding::FlatCriterion { .. }));
     if lost.count() > 0 {
         let problem = format!(
-            "{0} cannot be told from what the model says of them: their variances cannot be told \
-             apart; more than one {0} of each level is needed, and more than one impact on each",
+            "the variances cannot be told apart: between {0} nothing is left beside the terms of \
+             the model, as with one {0} of each level, or one impact on each {0}; a simpler model \
+             or more {0} are needed",
             study.by
         );
         return Err(unusable("--formula", problem));

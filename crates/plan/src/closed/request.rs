@@ -1,6 +1,7 @@
 //! What plans with an exact answer are asked.
 
 use crate::options::{PlanOptions, ScatterOptions};
+use windfall_tables::reading::ReadingOptions;
 
 /// A mean.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +19,9 @@ pub struct MeanRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// A difference between two groups, or two treatments of the same fruit.
@@ -67,6 +71,9 @@ pub struct DifferenceRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// Means of several groups.
@@ -88,6 +95,9 @@ pub struct GroupsRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// A slope on a column of numbers.
@@ -139,4 +149,7 @@ pub struct SlopeRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }

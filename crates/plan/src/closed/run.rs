@@ -19,7 +19,7 @@ use windfall_files::text::number::plain;
 /// An option cannot be used; no study tells what is wanted.
 pub fn plan_mean(request: &MeanRequest) -> Result<PlanOutcome, Error> {
     let effect = effect("--difference", request.difference)?;
-    let scatter = known_scatter(&request.scatter, 1)?;
+    let scatter = known_scatter(&request.scatter, 1, &request.reading)?;
     let first = match effect {
         Some(effect) => format!("mean that differs from a reference by {}", plain(effect)),
         None => "mean of a group of fruit".to_owned(),
@@ -51,7 +51,7 @@ pub fn plan_difference(request: &DifferenceRequest) -> Result<PlanOutcome, Error
         return Err(unusable("--ratio", problem));
     }
     let groups = if request.same_fruit { 1 } else { 2 };
-    let scatter = known_scatter(&request.scatter, groups)?;
+    let scatter = known_scatter(&request.scatter, groups, &request.reading)?;
     let (estimate, test) = estimate_of_difference(request, &scatter.scatter)?;
     let of = effect
         .map(|effect| format!(" of {}", plain(effect)))
@@ -144,7 +144,7 @@ pub fn plan_groups(request: &GroupsRequest) -> Result<PlanOutcome, Error> {
         let problem = "an F test of several means has no sides; plan the difference of two";
         return Err(unusable("--one-sided", problem));
     }
-    let scatter = known_scatter(&request.scatter, 1)?;
+    let scatter = known_scatter(&request.scatter, 1, &request.reading)?;
     if request.same_fruit && scatter.scatter.within().is_none() {
         let problem = "with --same-fruit the impacts of a fruit are compared: give --between and \
                        --within in place of --sd";
@@ -179,7 +179,7 @@ pub fn plan_groups(request: &GroupsRequest) -> Result<PlanOutcome, Error> {
 pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
     let effect = effect("--slope", request.slope)?;
     let (spread, values) = spread_of_x(request)?;
-    let scatter = known_scatter(&request.scatter, 1)?;
+    let scatter = known_scatter(&request.scatter, 1, &request.reading)?;
     if let Some(sd) = request.effect_sd {
         positive("--effect-sd", sd)?;
     }

@@ -182,7 +182,7 @@ fn scatter_of(request: &SurfacePlanRequest, surface: &Surface) -> Result<KnownSc
     let own = &request.scatter;
     let stated = own.sd.is_some() || own.between.is_some() || own.within.is_some();
     if stated || own.from.is_some() || request.response.is_none() {
-        return known_scatter(own, 1);
+        return known_scatter(own, 1, &request.reading);
     }
     let sd = surface.fit.variance().sqrt();
     if !(sd.is_finite() && sd > 0.0) {
