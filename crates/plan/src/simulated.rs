@@ -64,7 +64,7 @@ pub(crate) fn coverage_findings(
                 row.fruit,
                 impacts_text(row.impacts),
                 percent(levels.confidence),
-                percent(coverage.map_or(f64::NAN, |own| own.value))
+                percent(coverage.map_or(f64::NAN, |own| (1000.0 * own.value).round() / 1000.0))
             ),
         )
     };
