@@ -141,7 +141,14 @@ fn curve(question: &dyn Question, asked: &Asked, rows: &[PlanRow]) -> Result<Vec
         let fewest = question.fewest(*impacts)?.next_multiple_of(step);
         let (low, high) = match &asked.fruit {
             Fruit::Range(low, high) => ((*low).max(fewest), *high),
-            Fruit::Open(most) => (fewest, (largest + largest / 2).min(*most)),
+            Fruit::Open(most) => {
+                // half-widths of the fewest fruit would hide the wanted one
+                let low = match asked.goal {
+                    Goal::HalfWidth(_) => fewest.max(largest / 4),
+                    _ => fewest,
+                };
+                (low, (largest + largest / 2).min(*most))
+            }
             Fruit::Listed(_) => (fewest, largest),
         };
         let low = low.next_multiple_of(step);

@@ -277,6 +277,14 @@ fn closed_form_of_what_was_achieved() {
     assert!(found.get("observed_power").is_none());
 }
 
+/// A curve of half-widths begins at a quarter of the fruit that are needed.
+#[test]
+fn conserves_the_wanted_half_width_in_the_curve() {
+    let found = json("", "mean --sd 12 --half-width 1");
+    let needed = found["rows"][0]["fruit"].as_u64().unwrap();
+    assert_eq!(found["curve"][0]["fruit"], needed / 4);
+}
+
 /// Missing words are those that the options name.
 #[test]
 fn conserves_the_reading_of_a_table_of_scatter() {
