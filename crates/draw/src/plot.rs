@@ -9,10 +9,17 @@ use windfall_files::write_file::{check_outputs, write_whole};
 /// Writes a figure as SVG or PNG, by the ending of the name, and what it shows
 /// as CSV under the same name.
 ///
+/// * `option`: that names the figure, for errors
+///
 /// # Errors
 /// The name has another ending; one of the two may not be written, or cannot.
-pub fn write_plot(path: &Path, svg: String, csv: &str) -> Result<[PathBuf; 2], Error> {
-    let unusable = |problem: String| unusable(format!("--plot {}", path.display()), problem);
+pub fn write_plot(
+    option: &str,
+    path: &Path,
+    svg: String,
+    csv: &str,
+) -> Result<[PathBuf; 2], Error> {
+    let unusable = |problem: String| unusable(format!("{option} {}", path.display()), problem);
     let dots = match path.extension().and_then(|extension| extension.to_str()) {
         Some("svg") => false,
         Some("png") => true,

@@ -188,7 +188,7 @@ pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf;
     let title = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let svg = svg_of_curves(&title, &inspection.curves, &LIGHT);
     let data = csv_of_curves(&inspection.curves)?;
-    write_plot(path, svg, &data)
+    write_plot("--plot", path, svg, &data)
 }
 
 /// What one pass over a channel has found.

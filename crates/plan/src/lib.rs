@@ -6,6 +6,7 @@
 //! campaign.
 
 pub mod achieved;
+mod asked;
 pub mod closed;
 pub mod critical;
 mod figure;
@@ -19,6 +20,8 @@ mod replicates;
 mod run;
 pub mod scatter;
 mod search;
+mod simulated;
+mod sizes;
 mod study;
 pub mod surface;
 

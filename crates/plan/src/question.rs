@@ -5,6 +5,9 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_statistics::power::{Sides, Test};
 
+/// Name of the share of simulated intervals that hold the truth.
+pub(crate) const COVERAGE: &str = "coverage";
+
 /// Size of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Size {
@@ -31,6 +34,17 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
+    /// Whether simulated intervals miss the truth far more often than they should: more than one
+    /// and a half times as often, and by more than three errors of the simulation.
+    pub fn is_missed(&self, told: &Told) -> bool {
+        let coverage = told.also.iter().find(|own| own.of == COVERAGE);
+        coverage.zip(told.simulations).is_some_and(|(own, n)| {
+            let (missed, meant) = (1.0 - own.value, 1.0 - self.confidence);
+            let error = (meant * (1.0 - meant) / n.max(1) as f64).sqrt();
+            missed > 1.5 * meant && missed > meant + 3.0 * error
+        })
+    }
+
     /// The test at 1 - confidence.
     pub fn test(&self) -> Test {
         Test {
@@ -80,6 +94,10 @@ pub(crate) trait Question: Sync {
     /// # Errors
     /// The number of impacts cannot be used.
     fn fewest(&self, impacts: usize) -> Result<usize, Error>;
+    /// Fruit come in multiples of this number.
+    fn step(&self) -> usize {
+        1
+    }
     /// What a study of a size takes in all.
     fn count(&self, size: Size) -> Count;
     /// What a study of a size tells.
@@ -101,4 +119,34 @@ pub(crate) trait Question: Sync {
     fn is_closed_form(&self) -> bool;
     /// What a reader must know whatever the size.
     fn findings(&self) -> Vec<FindingOutcome>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 95 % of 1000 intervals miss 50 ± 3 · 6.9, and 1.5 times as often is 75.
+    #[test]
+    fn closed_form_coverage_that_is_missed() {
+        let levels = Levels {
+            confidence: 0.95,
+            sides: Sides::Two,
+            assurance: None,
+        };
+        let told = |value: f64, simulations: usize| Told {
+            simulations: Some(simulations),
+            also: vec![PrecisionOutcome {
+                of: COVERAGE.to_owned(),
+                value,
+                se: None,
+            }],
+            ..Told::default()
+        };
+        assert!(levels.is_missed(&told(0.76, 1000)));
+        assert!(levels.is_missed(&told(0.92, 1000)));
+        assert!(!levels.is_missed(&told(0.93, 1000)));
+        // 50 studies miss 2.5 ± 3 · 1.5
+        assert!(!levels.is_missed(&told(0.88, 50)));
+        assert!(!levels.is_missed(&Told::default()));
+    }
 }

@@ -1,7 +1,7 @@
 //! Simulated studies of one size, summed up.
 
 use crate::outcome::{PrecisionOutcome, simulated};
-use crate::question::Told;
+use crate::question::{COVERAGE, Told};
 use std::collections::BTreeMap;
 
 /// Part of the studies that must have an interval for its mean half-width to be told.
@@ -37,7 +37,7 @@ pub(crate) fn told_of<T>(
     let coverage = (!intervals.is_empty()).then(|| {
         let share = simulated(holds, intervals.len());
         PrecisionOutcome {
-            of: "coverage".to_owned(),
+            of: COVERAGE.to_owned(),
             value: share.value,
             se: share.se,
         }

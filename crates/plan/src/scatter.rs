@@ -7,6 +7,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::text::statistic::number;
+use windfall_tables::reading::ReadingOptions;
 use windfall_tables::regress::mixed::{MixedOutcome, VarianceOutcome};
 use windfall_tables::regress::request::RegressRequest;
 use windfall_tables::regress::run::{AnyRegressOutcome, regress};
@@ -82,15 +83,17 @@ impl Scatter {
 /// Reads the scatter.
 ///
 /// * `groups`: most standard deviations that an option may state
+/// * `reading`: how the table of earlier impacts is read
 ///
 /// # Errors
 /// None is known, or one is not above zero; the table cannot be used.
 pub(crate) fn known_scatter(
     options: &ScatterOptions,
     groups: usize,
+    reading: &ReadingOptions,
 ) -> Result<KnownScatter, Error> {
     if let (Some(table), Some(formula)) = (&options.from, &options.formula) {
-        return of_table(table, formula);
+        return of_table(table, formula, reading);
     }
     let sds = |option: &str, text: &str| sds(option, text, groups);
     match (&options.sd, &options.between, &options.within) {
@@ -164,9 +167,10 @@ fn sds(option: &str, text: &str, most: usize) -> Result<Vec<f64>, Error> {
 }
 
 /// The standard deviations of a mixed model's intercept and residual.
-fn of_table(table: &Path, formula: &str) -> Result<KnownScatter, Error> {
+fn of_table(table: &Path, formula: &str, reading: &ReadingOptions) -> Result<KnownScatter, Error> {
     let request = RegressRequest {
         formula: Some(formula.to_owned()),
+        reading: reading.clone(),
         ..RegressRequest::usual(table.to_path_buf(), String::new(), String::new())
     };
     let outcome = match regress(&request)? {

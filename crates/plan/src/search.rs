@@ -17,7 +17,11 @@ pub(crate) enum Goal {
 
 impl Goal {
     /// Whether a study tells enough; none where nothing is wanted or it has no such number.
-    pub fn reached(self, told: &Told) -> Option<bool> {
+    /// Intervals that miss the truth too often tell nothing.
+    pub fn reached(self, told: &Told, levels: &Levels) -> Option<bool> {
+        if self != Self::Open && levels.is_missed(told) {
+            return Some(false);
+        }
         match self {
             Self::Open => None,
             Self::Power(wanted) => told.power.map(|power| power.value >= wanted),
@@ -49,7 +53,7 @@ pub(crate) type Studies = Vec<(Size, Told)>;
 /// The smallest study that tells enough with so many impacts on each fruit, by doubling and
 /// bisection; the largest where none does. More fruit are taken to tell more.
 ///
-/// * `fewest`, `most`: fruit between which it is looked for
+/// * `fewest`, `most`: fruit between which it is looked for, multiples of the question's step
 ///
 /// Returns it, and all that were looked at.
 ///
@@ -61,10 +65,13 @@ pub(crate) fn smallest(
     (fewest, most): (usize, usize),
 ) -> Result<((Size, Told), Studies), Error> {
     let mut studies = Studies::new();
-    let mut enough = |fruit: usize| -> Result<bool, Error> {
+    let step = question.step();
+    let (fewest, most) = (fewest / step, most / step);
+    let mut enough = |steps: usize| -> Result<bool, Error> {
+        let fruit = steps * step;
         let size = Size { fruit, impacts };
         let told = told(question, size, levels)?;
-        let reached = goal.reached(&told) == Some(true);
+        let reached = goal.reached(&told, levels) == Some(true);
         studies.push((size, told));
         Ok(reached)
     };
@@ -84,7 +91,7 @@ pub(crate) fn smallest(
         }
     }
     studies.sort_by_key(|(size, _)| size.fruit);
-    let chosen = studies.iter().find(|(size, _)| size.fruit == high);
+    let chosen = studies.iter().find(|(size, _)| size.fruit == high * step);
     let chosen = chosen.or(studies.last()).cloned().unwrap_or_default();
     Ok((chosen, studies))
 }

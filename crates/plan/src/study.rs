@@ -173,6 +173,24 @@ fn fruit_of(random: &[RandomTerm], x: &DMatrix<f64>) -> Vec<Vec<usize>> {
 }
 
 impl Study {
+    /// Number of independent columns that are the same in all rows of every fruit, and of the
+    /// others.
+    pub fn columns_between(&self) -> (usize, usize) {
+        let x = &self.told.x;
+        let same = |column: &usize| {
+            self.fruit.iter().all(|rows| {
+                let first = rows.first().map_or(0.0, |row| x[(*row, *column)]);
+                let close = |row: &usize| {
+                    let own = x[(*row, *column)];
+                    (own - first).abs() <= SAME * own.abs().max(first.abs())
+                };
+                rows.iter().all(close)
+            })
+        };
+        let between = (0..x.ncols()).filter(same).count();
+        (between, x.ncols() - between)
+    }
+
     /// Rows of each fruit on average.
     pub fn usual_impacts(&self) -> usize {
         let rows: usize = self.fruit.iter().map(Vec::len).sum();

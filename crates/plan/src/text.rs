@@ -71,15 +71,24 @@ fn columns(outcome: &PlanOutcome) -> Vec<Cell<'_>> {
         let cell = |row: &PlanRow| row.detectable.map(number).unwrap_or_default();
         columns.push(("detectable".into(), Box::new(cell)));
     }
-    let also = outcome.rows.first().map_or(&[][..], |row| &row.also[..]);
-    for (place, precision) in also.iter().enumerate() {
+    for of in precisions(outcome) {
         let cell = move |row: &PlanRow| {
-            row.also
-                .get(place)
-                .map(|own| number(own.value))
-                .unwrap_or_default()
+            let own = row.also.iter().find(|own| own.of == of);
+            own.map(|own| number(own.value)).unwrap_or_default()
         };
-        columns.push((precision.of.clone(), Box::new(cell)));
+        columns.push((of.to_owned(), Box::new(cell)));
+    }
+    let share = |of: fn(&PlanRow) -> usize| {
+        move |row: &PlanRow| {
+            let all = row.simulations.unwrap_or_default().max(1);
+            percent((1000.0 * of(row) as f64 / all as f64).round() / 1000.0)
+        }
+    };
+    if any(&|row| row.failed > 0) {
+        columns.push(("failed".into(), Box::new(share(|row| row.failed))));
+    }
+    if any(&|row| row.singular > 0) {
+        columns.push(("singular".into(), Box::new(share(|row| row.singular))));
     }
     if any(&|row| row.cost.is_some()) {
         columns.push((
@@ -91,6 +100,17 @@ fn columns(outcome: &PlanOutcome) -> Vec<Cell<'_>> {
         columns.push((String::new(), Box::new(mark)));
     }
     columns
+}
+
+/// Names of further precisions, which a study may lack.
+fn precisions(outcome: &PlanOutcome) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for own in outcome.rows.iter().flat_map(|row| &row.also) {
+        if !names.contains(&own.of.as_str()) {
+            names.push(&own.of);
+        }
+    }
+    names
 }
 
 /// Title of the column of fruit.

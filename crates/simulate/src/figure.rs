@@ -21,7 +21,7 @@ const MARGIN: f64 = 0.1;
 pub fn write_impact_figure(path: &Path, event: &Event) -> Result<[PathBuf; 2], Error> {
     let figure = figure_of_motion(event.law.kind().name(), &motion_of_figure(event)?);
     let csv = csv_of_figure(&figure)?;
-    write_plot(path, svg_of_figure(&figure, &LIGHT), &csv)
+    write_plot("--plot", path, svg_of_figure(&figure, &LIGHT), &csv)
 }
 
 /// The motion at instants that are close together after first touch, where a law

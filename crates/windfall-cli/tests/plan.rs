@@ -39,7 +39,8 @@ fn impacts() -> String {
 }
 
 /// Expected: R 4.2.2, `power.t.test(…, strict = TRUE)`, `power.anova.test`'s formula by mpmath
-/// (R's `pf` is off by 1e-9), noncentral t in `pt` for slopes, and `integrate` over the two
+/// (R's `pf` is off by 1e-9), noncentral t in `pt` for slopes (over `dchisq` by `integrate` where x
+/// is drawn), and `integrate` over the two
 /// variances for Welch's test.
 #[test]
 fn reference_power_of_r() {
@@ -89,7 +90,7 @@ fn reference_power_of_r() {
         ),
         (
             "slope --slope 0.02 --spread-x 8 --sd 0.3 --fruit 20",
-            0.616680353494,
+            0.578473344269,
         ),
         (
             "slope --slope -0.4 --x 0.1,0.3,0.5 --same-fruit --impacts 6 --between 0.2 --within 0.1 --fruit 5",
@@ -115,6 +116,12 @@ fn reference_half_widths_of_r() {
     for (line, expected) in [
         ("mean --sd 12 --fruit 10", 8.34958234679),
         ("mean --sd 12 --fruit 10 --assurance 0.9", 10.9647787985),
+        ("slope --spread-x 8 --sd 0.3 --fruit 5", 0.06890198366),
+        ("slope --spread-x 8 --sd 0.3 --fruit 30", 0.01451672111),
+        (
+            "slope --spread-x 8 --sd 0.3 --fruit 30 --assurance 0.9",
+            0.01818095596,
+        ),
         ("difference --sd 1,2 --fruit 10 --ratio 1.5", 1.24621021977),
         (
             "difference --sd 1,2 --fruit 10 --ratio 1.5 --assurance 0.9",
@@ -186,6 +193,12 @@ fn closed_form_budgets() {
     assert_eq!(best, [false, true, false, false]);
     let poor = json("", &format!("{line} --power 0.8"));
     assert_eq!(poor["findings"][0]["code"], "over-budget");
+    let found = json("", "mean --sd 1 --fruit 50,60 --cost-fruit 4 --budget 100");
+    let text = found["findings"][0]["message"].as_str().unwrap();
+    assert_eq!(
+        text,
+        "the budget pays for none of the studies tried: the cheapest costs 200.0"
+    );
     let (_, csv, _) = on_table::run("", &words(&format!("plan {line} --format csv")));
     assert!(csv.starts_with("impacts,fruit,fruit_in_all,"), "{csv}");
     assert_eq!(csv.lines().count(), 5);
@@ -203,6 +216,13 @@ fn repeats_simulations_for_any_number_of_threads() {
     assert_ne!(
         one["rows"],
         json(&impacts(), &format!("{line} --seed 2"))["rows"]
+    );
+    // the order of the columns of a term means nothing
+    let term =
+        "model t.csv --formula 'k ~ V * variety + (1 | fruit)' --fruit 12 --simulations 50 --term";
+    assert_eq!(
+        json(&impacts(), &format!("{term} V:variety"))["rows"],
+        json(&impacts(), &format!("{term} variety:V"))["rows"]
     );
     let power = &one["rows"][0]["power"];
     assert!(power["low"].as_f64().unwrap() < power["value"].as_f64().unwrap());
@@ -241,6 +261,12 @@ fn closed_form_of_what_was_achieved() {
         variety["detectable"]
     );
     close(&row(&line)["power"]["value"], 0.8, 1e-6);
+    // half of twelve fruit: 6 - 2 degrees of freedom; qt(0.975, 4) and qt(0.975, 22) of R
+    let se = variety["se"].as_f64().unwrap();
+    let half = 2.776445105198 * se * 2f64.sqrt();
+    close(&variety["half_width_with_half"], half, 1e-6);
+    let twice = 2.073873067904 * se / 2f64.sqrt();
+    close(&variety["half_width_with_twice"], twice, 1e-6);
     let difference = found["estimates"].as_array().unwrap().last().unwrap();
     close(
         &difference["half_width"],
@@ -249,6 +275,78 @@ fn closed_form_of_what_was_achieved() {
     );
     // no power of what was found (Hoenig and Heisey 2001)
     assert!(found.get("observed_power").is_none());
+}
+
+/// A curve of half-widths begins at a quarter of the fruit that are needed.
+#[test]
+fn conserves_the_wanted_half_width_in_the_curve() {
+    let found = json("", "mean --sd 12 --half-width 1");
+    let needed = found["rows"][0]["fruit"].as_u64().unwrap();
+    assert_eq!(found["curve"][0]["fruit"], needed / 4);
+}
+
+/// Missing words are those that the options name.
+#[test]
+fn conserves_the_reading_of_a_table_of_scatter() {
+    let line = "mean --from t.csv --formula 'k ~ V + (1 | fruit)' --fruit 6 --impacts 3";
+    let table = impacts() + "f0,Fuji,0.9,lost\n";
+    let found = json(&table, &format!("{line} --missing lost"));
+    assert_eq!(found["rows"], json(&impacts(), line)["rows"]);
+}
+
+/// One fruit of each level: fruit and levels are one.
+#[test]
+fn rejects_a_campaign_that_tells_no_variance() {
+    let mut table = "fruit,g,V,k\n".to_owned();
+    for (fruit, g) in ["a", "b", "c"].iter().enumerate() {
+        for (v, error) in [(1, 0.1), (2, -0.2), (3, 0.15)] {
+            table += &format!(
+                "f{fruit},{g},{v},{}\n",
+                v as f64 * 2.0 + error * (fruit + 1) as f64
+            );
+        }
+    }
+    let line = words("plan achieved t.csv --formula 'k ~ V + g + (1 | fruit)'");
+    let (status, _, told) = on_table::run(&table, &line);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains("variances cannot be told apart"), "{told}");
+}
+
+/// Without means there are the coefficients of `windfall regress` alone.
+#[test]
+fn conserves_what_was_achieved_without_means() {
+    let formula = "'k ~ V + (1 | fruit)'";
+    let found = json(&impacts(), &format!("achieved t.csv --formula {formula}"));
+    let regress = format!("regress t.csv --formula {formula}");
+    let regress = on_table::json(&impacts(), &words(&regress));
+    let (own, terms) = (
+        found["estimates"].as_array().unwrap(),
+        regress["terms"].as_array().unwrap(),
+    );
+    assert_eq!(own.len(), terms.len());
+    for (own, term) in own.iter().zip(terms) {
+        assert_eq!(own["kind"], "coefficient");
+        assert_eq!(own["se"], term["se"]);
+    }
+}
+
+/// Values of x that every so many fruit have equally often: R 4.2.2, noncentral t in `pt`, with
+/// Sxx = n · 8.25 of ten fruit, 2 · 82.5 of twenty.
+#[test]
+fn conserves_the_values_of_x() {
+    let line = "slope --slope 0.3 --x 1,2,3,4,5,6,7,8,9,10 --sd 1";
+    assert_eq!(row(&format!("{line} --power 0.6"))["fruit"], 10);
+    assert_eq!(row(&format!("{line} --power 0.8"))["fruit"], 20);
+    assert_eq!(
+        row(&format!("{line} --power 0.8 --fruit 5..60"))["fruit"],
+        20
+    );
+    let listed = json("", &format!("{line} --fruit 5..35"));
+    let fruit = listed["rows"].as_array().unwrap().iter();
+    let fruit: Vec<u64> = fruit.map(|row| row["fruit"].as_u64().unwrap()).collect();
+    assert_eq!(fruit, [10, 20, 30]);
+    let paid = row(&format!("{line} --cost-fruit 1 --budget 39"));
+    assert_eq!(paid["fruit"], 30);
 }
 
 /// Scatter from a table is that of its mixed model.
@@ -306,6 +404,17 @@ fn closed_form_precision_of_a_surface() {
     let moved = found["rows"][0]["also"][0]["value"].as_f64().unwrap();
     assert!((moved / 0.049 - 1.0).abs() < 0.1, "{moved}");
     assert_eq!(found["rows"][0]["also"][2]["value"], 0.0);
+    // an optimum at A = 5: the response is that at the centre, and there is no place
+    let found = json(&design, &line.replace("'A^2=-1", "'A=10,A^2=-1"));
+    assert_eq!(found["findings"][0]["code"], "no-optimum");
+    assert_eq!(
+        found["half_width_of"],
+        "half-width of the response at the centre"
+    );
+    let about = found["about"][0].as_str().unwrap();
+    assert!(about.contains("centre, 0 at A 0, B 0"), "{about}");
+    assert_eq!(found["rows"][0]["also"], Value::Array(Vec::new()));
+    close(&found["rows"][0]["half_width"], 1.70407763676, 1e-9);
 }
 
 #[test]
@@ -430,6 +539,18 @@ fn rejects_what_cannot_be_planned() {
             "x has one value",
         ),
         (
+            "slope --x 1,2,3,4,5,6,7,8,9,10 --sd 1 --fruit 24",
+            "--fruit: 24 fruit cannot have the 10 values of --x equally often: 20 and 30 are the",
+        ),
+        (
+            "slope --x 1,2,3,4 --sd 1 --fruit 5..7",
+            "--fruit: 5 fruit cannot have the 4 values of --x equally often: 4 and 8 are the",
+        ),
+        (
+            "slope --x 1,2,3,4 --sd 1 --fruit 3",
+            "--fruit: 3 fruit cannot tell how much fruit differ: at least 4 are needed",
+        ),
+        (
             "slope --slope 1 --x 1,2 --sd 1 --fruit 9 --same-fruit",
             "--sd: with --same-fruit",
         ),
@@ -477,6 +598,26 @@ fn rejects_what_cannot_be_planned() {
         (
             "model t.csv --formula 'k ~ V + (1 | fruit)' --fruit 4 --simulations 1",
             "--simulations: 1 is not between",
+        ),
+        (
+            "model t.csv --formula 'k ~ V + (1 | fruit)' --effect V=1e300 --fruit 4",
+            "--effect V=1e300: the effect is too large",
+        ),
+        (
+            "model t.csv --formula 'k ~ V + (1 | fruit)' --effect V=1 --effect V=2 --fruit 4",
+            "--effect V=2: V is stated twice",
+        ),
+        (
+            "difference --sd 1 --difference 1 --fruit 4 --same-fruit --pooled",
+            "--same-fruit",
+        ),
+        (
+            "critical-energy --median 1 --spread 1 --energies 1 --half-width 0.2",
+            "--energies 1: too few: one energy",
+        ),
+        (
+            "mean --sd 1 --fruit 4 --figure plan.gif",
+            "--figure plan.gif: figures are written as SVG or PNG",
         ),
         (
             "achieved t.csv --formula 'k ~ V'",

@@ -7,6 +7,7 @@ use crate::study::read_study;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_statistics::distribution::tail::t_upper_quantile;
+use windfall_statistics::mixed::finding::MixedFinding;
 use windfall_statistics::power::t_test::detectable_effect;
 use windfall_statistics::power::{Sides, Test};
 use windfall_tables::regress::means::request::{Adjust, MeansRequest};
@@ -35,10 +36,25 @@ pub fn achieved(request: &AchievedRequest) -> Result<AchievedOutcome, Error> {
         return Err(unusable("--power", problem));
     }
     let (study, _) = read_study(&request.table, &request.formula, &request.reading)?;
+    let lost = study.fit.findings.iter();
+    let lost = lost.filter(|own| matches!(own, MixedFinding::FlatCriterion { .. }));
+    if lost.count() > 0 {
+        let problem = format!(
+            "the variances cannot be told apart: between {0} nothing is left beside the terms of \
+             the model, as with one {0} of each level, or one impact on each {0}; a simpler model \
+             or more {0} are needed",
+            study.by
+        );
+        return Err(unusable("--formula", problem));
+    }
     let outcome = regressed(request)?;
-    let fruit = study.fruit.len();
+    let campaign = Campaign {
+        fruit: study.fruit.len(),
+        columns: study.columns_between(),
+    };
+    let fruit = campaign.fruit;
     let estimates = estimates(&outcome).into_iter();
-    let estimates = estimates.map(|known| told(known, fruit, (test, request.power)));
+    let estimates = estimates.map(|known| told(known, &campaign, (test, request.power)));
     Ok(AchievedOutcome {
         formula: outcome.formula.clone(),
         by: study.by.clone(),
@@ -83,12 +99,31 @@ struct Known {
     half_width: f64,
 }
 
+/// Size of a campaign.
+struct Campaign {
+    fruit: usize,
+    /// Coefficients of what differs between fruit, and of what differs within them.
+    columns: (usize, usize),
+}
+
+impl Campaign {
+    /// Degrees of freedom with `factor` times as many fruit: without the coefficients of its
+    /// stratum they are in proportion to the fruit, as N - p and N/2 - p between fruit.
+    fn df(&self, factor: f64, df: f64) -> f64 {
+        let (between, within) = self.columns;
+        let coefficients = match df <= self.fruit as f64 {
+            true => between as f64,
+            false => within as f64,
+        };
+        factor * (df + coefficients) - coefficients
+    }
+}
+
 /// Estimates with what they could have told.
 ///
 /// What a study tells of its coefficients is a sum over its fruit: with as many fruit again of
-/// the same settings squared standard errors are halved. Degrees of freedom are taken in
-/// proportion.
-fn told(known: Known, fruit: usize, (test, power): (Test, f64)) -> AchievedEstimate {
+/// the same settings squared standard errors are halved.
+fn told(known: Known, campaign: &Campaign, (test, power): (Test, f64)) -> AchievedEstimate {
     let Known {
         kind,
         name,
@@ -98,8 +133,9 @@ fn told(known: Known, fruit: usize, (test, power): (Test, f64)) -> AchievedEstim
         half_width,
     } = known;
     let scaled = |factor: f64| {
-        let width = se / factor.sqrt() * t_upper_quantile(test.tail(), factor * df);
-        (width.is_finite() && factor * fruit as f64 >= 2.0).then_some(width)
+        let df = campaign.df(factor, df);
+        let width = se / factor.sqrt() * t_upper_quantile(test.tail(), df);
+        (width.is_finite() && df >= 1.0 && factor * campaign.fruit as f64 >= 2.0).then_some(width)
     };
     let tested = kind != "mean" && name != "(Intercept)";
     let detectable = se * detectable_effect(power, df, test);

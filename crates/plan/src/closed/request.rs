@@ -1,6 +1,7 @@
 //! What plans with an exact answer are asked.
 
 use crate::options::{PlanOptions, ScatterOptions};
+use windfall_tables::reading::ReadingOptions;
 
 /// A mean.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +19,9 @@ pub struct MeanRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// A difference between two groups, or two treatments of the same fruit.
@@ -42,7 +46,10 @@ pub struct DifferenceRequest {
     )]
     pub ratio: f64,
     /// One variance for both groups with --sd (Student's t test), in place of Welch's
-    #[cfg_attr(feature = "clap", arg(long, requires = "sd"))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, requires = "sd", conflicts_with = "same_fruit")
+    )]
     pub pooled: bool,
     /// Every fruit gets both treatments, --impacts of each; --sd is then that of the differences
     #[cfg_attr(feature = "clap", arg(long))]
@@ -64,6 +71,9 @@ pub struct DifferenceRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// Means of several groups.
@@ -85,6 +95,9 @@ pub struct GroupsRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }
 
 /// A slope on a column of numbers.
@@ -108,7 +121,8 @@ pub struct SlopeRequest {
         )
     )]
     pub x: Option<String>,
-    /// Standard deviation of x in the study, where its values are not known
+    /// Standard deviation of x, where its values are not chosen: x as they fall, normal with this
+    /// standard deviation; with --same-fruit that of the x of every fruit
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "SD", allow_negative_numbers = true)
@@ -135,4 +149,7 @@ pub struct SlopeRequest {
     /// Sizes and what is wanted.
     #[cfg_attr(feature = "clap", command(flatten))]
     pub plan: PlanOptions,
+    /// How the table of --from is read
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub reading: ReadingOptions,
 }

@@ -19,7 +19,7 @@ use windfall_files::text::number::plain;
 /// An option cannot be used; no study tells what is wanted.
 pub fn plan_mean(request: &MeanRequest) -> Result<PlanOutcome, Error> {
     let effect = effect("--difference", request.difference)?;
-    let scatter = known_scatter(&request.scatter, 1)?;
+    let scatter = known_scatter(&request.scatter, 1, &request.reading)?;
     let first = match effect {
         Some(effect) => format!("mean that differs from a reference by {}", plain(effect)),
         None => "mean of a group of fruit".to_owned(),
@@ -51,7 +51,7 @@ pub fn plan_difference(request: &DifferenceRequest) -> Result<PlanOutcome, Error
         return Err(unusable("--ratio", problem));
     }
     let groups = if request.same_fruit { 1 } else { 2 };
-    let scatter = known_scatter(&request.scatter, groups)?;
+    let scatter = known_scatter(&request.scatter, groups, &request.reading)?;
     let (estimate, test) = estimate_of_difference(request, &scatter.scatter)?;
     let of = effect
         .map(|effect| format!(" of {}", plain(effect)))
@@ -83,6 +83,10 @@ fn estimate_of_difference(
     scatter: &Scatter,
 ) -> Result<(Estimate, &'static str), Error> {
     if request.same_fruit {
+        if request.pooled {
+            let problem = "with --same-fruit there is one group of fruit: leave it out";
+            return Err(unusable("--pooled", problem));
+        }
         if let Some(sd) = request.effect_sd {
             positive("--effect-sd", sd)?;
         }
@@ -140,7 +144,7 @@ pub fn plan_groups(request: &GroupsRequest) -> Result<PlanOutcome, Error> {
         let problem = "an F test of several means has no sides; plan the difference of two";
         return Err(unusable("--one-sided", problem));
     }
-    let scatter = known_scatter(&request.scatter, 1)?;
+    let scatter = known_scatter(&request.scatter, 1, &request.reading)?;
     if request.same_fruit && scatter.scatter.within().is_none() {
         let problem = "with --same-fruit the impacts of a fruit are compared: give --between and \
                        --within in place of --sd";
@@ -175,7 +179,7 @@ pub fn plan_groups(request: &GroupsRequest) -> Result<PlanOutcome, Error> {
 pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
     let effect = effect("--slope", request.slope)?;
     let (spread, values) = spread_of_x(request)?;
-    let scatter = known_scatter(&request.scatter, 1)?;
+    let scatter = known_scatter(&request.scatter, 1, &request.reading)?;
     if let Some(sd) = request.effect_sd {
         positive("--effect-sd", sd)?;
     }
@@ -199,7 +203,7 @@ pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
             )
         }
         false => (
-            Estimate::Slope { spread },
+            Estimate::Slope { spread, values },
             "a property of the fruit",
             "t test of the regression of the means of fruit",
         ),
@@ -208,7 +212,10 @@ pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
         .map(|effect| format!(" of {}", plain(effect)))
         .unwrap_or_default();
     let mut about = vec![
-        format!("slope{of} on {on}; SD of x {}", plain(spread)),
+        format!(
+            "slope{of} on {on}; {}",
+            words_of_x(spread, values, request.same_fruit)
+        ),
         scatter.words.clone(),
     ];
     if let Some(sd) = request.effect_sd {
@@ -223,6 +230,15 @@ pub fn plan_slope(request: &SlopeRequest) -> Result<PlanOutcome, Error> {
         about,
     };
     plan(&question, &request.plan)
+}
+
+/// "SD of x 8, x as they fall".
+fn words_of_x(spread: f64, values: Option<usize>, same_fruit: bool) -> String {
+    let spread = plain(spread);
+    match (values, same_fruit) {
+        (None, false) => format!("x as they fall, normal with a standard deviation of {spread}"),
+        _ => format!("SD of x {spread}"),
+    }
 }
 
 fn needs_within(scatter: &KnownScatter) -> Result<(), Error> {

@@ -6,6 +6,10 @@ use crate::scatter::{KnownScatter, Scatter};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
+use windfall_statistics::power::drawn_slope::{
+    drawn_slope_assured_half_width, drawn_slope_detectable, drawn_slope_half_width,
+    drawn_slope_power,
+};
 use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 use windfall_statistics::power::t_test::{detectable_effect, t_power};
 use windfall_statistics::power::welch::{
@@ -31,8 +35,11 @@ pub(crate) enum Estimate {
     },
     /// Slope on a property of the fruit.
     Slope {
-        /// Standard deviation of x (denominator n).
+        /// Standard deviation of x: of its values (denominator n), or of the normal distribution
+        /// that they come from.
         spread: f64,
+        /// Number of values of x, each on as many fruit as the others; drawn where there are none.
+        values: Option<usize>,
     },
     /// Slope on what changes between the impacts of every fruit.
     SlopeOnFruit {
@@ -74,6 +81,32 @@ impl TQuestion {
         }
     }
 
+    /// Standard deviation of the means of fruit over that of x, where x is drawn with the fruit.
+    fn drawn(&self, size: Size) -> Option<f64> {
+        match self.estimate {
+            Estimate::Slope {
+                spread,
+                values: None,
+            } => Some(self.scatter().of_fruit_mean(0, size.impacts) / spread),
+            _ => None,
+        }
+    }
+
+    /// What a slope on values of x that are drawn tells.
+    fn told_of_drawn(&self, scale: f64, size: Size, levels: &Levels) -> Told {
+        let (n, confidence) = (size.fruit, levels.confidence);
+        let power = |slope: f64| drawn_slope_power(slope.abs() / scale, n, levels.test());
+        Told {
+            power: self.effect.map(power).map(exact),
+            half_width: Some(match levels.assurance {
+                None => drawn_slope_half_width(scale, n, confidence),
+                Some(assurance) => drawn_slope_assured_half_width(scale, n, confidence, assurance),
+            }),
+            df: Some(n as f64 - 2.0),
+            ..Told::default()
+        }
+    }
+
     /// Standard error and degrees of freedom.
     ///
     /// With n fruit, m impacts on each (of each treatment), σ² = σ_b² + σ_w²/m:
@@ -84,7 +117,7 @@ impl TQuestion {
     /// | difference of groups | σ² (1/n₁ + 1/n₂) | n₁ + n₂ - 2 |
     /// | difference on the same fruit | 2 σ_w²/(m n) | 2 m n - n - 1 |
     /// | the same, if it differs between fruit | (σ_d² + 2 σ_w²/m)/n | n - 1 |
-    /// | slope on fruit | σ²/(n s²) | n - 2 |
+    /// | slope on fruit, values of x stated | σ²/(n s²) | n - 2 |
     /// | slope on every fruit | σ_w²/(m n s²) | m n - n - 1 |
     /// | the same, if it differs between fruit | (σ_d² + σ_w²/(m s²))/n | n - 1 |
     ///
@@ -106,7 +139,7 @@ impl TQuestion {
                 (Some(w), None) => (w * (2.0 / (m * n)).sqrt(), 2.0 * m * n - n - 1.0),
                 (Some(w), Some(sd)) => (sd.hypot(w * (2.0 / m).sqrt()) / n.sqrt(), n - 1.0),
             },
-            Estimate::Slope { spread } => (own / (n.sqrt() * spread), n - 2.0),
+            Estimate::Slope { spread, .. } => (own / (n.sqrt() * spread), n - 2.0),
             Estimate::SlopeOnFruit {
                 spread, effect_sd, ..
             } => {
@@ -162,6 +195,13 @@ impl Question for TQuestion {
         })
     }
 
+    fn step(&self) -> usize {
+        match self.estimate {
+            Estimate::Slope { values, .. } => values.unwrap_or(1),
+            _ => 1,
+        }
+    }
+
     fn count(&self, size: Size) -> Count {
         let Size { fruit, impacts } = size;
         match self.estimate {
@@ -184,6 +224,9 @@ impl Question for TQuestion {
     }
 
     fn told(&self, size: Size, levels: &Levels) -> Result<Told, Error> {
+        if let Some(scale) = self.drawn(size) {
+            return Ok(self.told_of_drawn(scale, size, levels));
+        }
         let (test, confidence) = (levels.test(), levels.confidence);
         let effect = self.effect.map(f64::abs);
         let (power, half_width, df) = match self.welch(size) {
@@ -217,6 +260,9 @@ impl Question for TQuestion {
 
     fn detectable(&self, size: Size, levels: &Levels, power: f64) -> Option<f64> {
         let test = levels.test();
+        if let Some(scale) = self.drawn(size) {
+            return Some(scale * drawn_slope_detectable(power, size.fruit, test));
+        }
         match self.welch(size) {
             None => {
                 let (error, df) = self.error(size);

@@ -28,6 +28,13 @@ pub fn plan_critical(request: &CriticalRequest) -> Result<PlanOutcome, Error> {
             problem,
         ));
     }
+    if energies.len() < 2 {
+        let problem = "too few: one energy cannot tell median and spread apart; give two or more";
+        return Err(unusable(
+            format!("--energies {}", request.energies),
+            problem,
+        ));
+    }
     if request.plan.impacts.is_some() {
         let problem = "every fruit is struck at --energies until it changes: leave it out";
         return Err(unusable("--impacts", problem));

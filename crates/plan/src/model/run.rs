@@ -85,7 +85,7 @@ fn chosen_term(study: &Study, wanted: Option<&str>) -> Result<usize, Error> {
         )),
         (Some(wanted), _) => names
             .iter()
-            .position(|name| *name == wanted)
+            .position(|name| factors(name) == factors(wanted))
             .ok_or_else(|| {
                 let known = known_names(wanted, names.iter().copied());
                 unusable(
@@ -96,9 +96,20 @@ fn chosen_term(study: &Study, wanted: Option<&str>) -> Result<usize, Error> {
     }
 }
 
+/// Columns of a term, sorted: V:variety is variety:V.
+fn factors(term: &str) -> Vec<&str> {
+    let mut factors: Vec<&str> = term.split(':').map(str::trim).collect();
+    factors.sort_unstable();
+    factors
+}
+
+/// Effect in residual standard deviations beyond which rounding hides the scatter.
+const LARGEST_EFFECT: f64 = 1e9;
+
 /// Fitted coefficients, those that are stated in their place.
 fn true_coefficients(study: &Study, effects: &[String]) -> Result<Vec<f64>, Error> {
     let mut coefficients = study.fit.coefficients.clone();
+    let mut stated = Vec::new();
     for text in effects {
         let wrong = |problem: &str| unusable(format!("--effect {text}"), problem);
         let expected = "expected COEFFICIENT=VALUE, as V=-0.3";
@@ -113,6 +124,17 @@ fn true_coefficients(study: &Study, effects: &[String]) -> Result<Vec<f64>, Erro
                 let known = known_names(name.trim(), names.iter().map(String::as_str));
                 wrong(&format!("the model has no such coefficient{known}"))
             })?;
+        if stated.contains(&place) {
+            return Err(wrong(&format!("{} is stated twice", name.trim())));
+        }
+        let largest = study.told.x.column(place).amax() * value.abs();
+        if largest > LARGEST_EFFECT * study.fit.residual_sd {
+            return Err(wrong(&format!(
+                "the effect is too large to calculate with: impacts scatter by {}",
+                number(study.fit.residual_sd)
+            )));
+        }
+        stated.push(place);
         coefficients[place] = value;
     }
     Ok(coefficients)

@@ -4,7 +4,7 @@ use crate::outcome::PrecisionOutcome;
 use crate::question::{Count, Levels, Question, Size, Told};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::distribution::tail::{chi_squared_upper, f_upper};
+use windfall_statistics::distribution::tail::f_upper;
 use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 
 /// A parameter of a population.
@@ -27,25 +27,23 @@ impl PopulationQuestion {
     /// var = 2/m² [(m σ_b² + σ_w²)²/(n - 1) + σ_w⁴/(n (m - 1))]
     /// ```
     ///
-    /// halved for the standard deviation. With one impact on each fruit σ_w is taken as known.
+    /// halved for the standard deviation. None with one impact on each fruit, which does not
+    /// tell fruit and impacts apart.
     ///
     /// # Source
     /// Searle, Casella and McCulloch (1992), Variance components, eqs. 3.47 and 3.60.
-    fn spread(&self, size: Size) -> (f64, f64) {
+    fn spread(&self, size: Size) -> Option<(f64, f64)> {
+        if size.impacts < 2 {
+            return None;
+        }
         let (n, m) = (size.fruit as f64, size.impacts as f64);
         let (b, w) = (self.between.powi(2), self.within.powi(2));
         let whole = m * b + w;
-        let of_within = match size.impacts {
-            1 => 0.0,
-            _ => w * w / (n * (m - 1.0)),
-        };
+        let of_within = w * w / (n * (m - 1.0));
         let variance = 2.0 / (m * m) * (whole * whole / (n - 1.0) + of_within);
         // B/W below 1, times its expected value F
-        let zero = match size.impacts {
-            1 => 1.0 - chi_squared_upper((n - 1.0) * w / whole, n - 1.0),
-            _ => 1.0 - f_upper(w / whole, n - 1.0, n * (m - 1.0)),
-        };
-        (0.5 * variance.sqrt() / b, zero)
+        let zero = 1.0 - f_upper(w / whole, n - 1.0, n * (m - 1.0));
+        Some((0.5 * variance.sqrt() / b, zero))
     }
 }
 
@@ -81,7 +79,6 @@ impl Question for PopulationQuestion {
             None => expected_half_width(error, df, levels.confidence),
             Some(assurance) => assured_half_width(error, df, levels.confidence, assurance),
         };
-        let (spread, zero) = self.spread(size);
         let also = |of: &str, value: f64| PrecisionOutcome {
             of: of.to_owned(),
             value,
@@ -90,7 +87,10 @@ impl Question for PopulationQuestion {
         Ok(Told {
             half_width: Some(half_width),
             df: Some(df),
-            also: vec![also("SD's error", spread), also("SD of zero", zero)],
+            also: match self.spread(size) {
+                Some((spread, zero)) => vec![also("SD's error", spread), also("SD of zero", zero)],
+                None => Vec::new(),
+            },
             ..Told::default()
         })
     }
@@ -137,10 +137,9 @@ mod tests {
             about: Vec::new(),
             findings: Vec::new(),
         };
-        let (error, zero) = question.spread(Size {
-            fruit: 12,
-            impacts: 4,
-        });
+        let of = |impacts| question.spread(Size { fruit: 12, impacts });
+        let (error, zero) = of(4).unwrap_or_default();
+        assert_eq!(of(1), None);
         assert!((error - 0.226_645_480_711_105).abs() < 1e-12, "{error}");
         assert!((zero / 9.250_322_937_49e-6 - 1.0).abs() < 1e-6, "{zero}");
     }

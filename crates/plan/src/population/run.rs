@@ -34,6 +34,14 @@ pub fn plan_population(request: &PopulationPlanRequest) -> Result<PlanOutcome, E
     })?;
     let (place, of) = parameter(population, &request.parameter)?;
     let between = sd(&population.between_fruit, place);
+    let known = variance(&population.between_fruit, place);
+    if let Some(negative) = known.filter(|variance| *variance < 0.0) {
+        let problem = format!(
+            "{shown} states a negative variance of {of} between fruit, {}: correct the card",
+            plain(negative)
+        );
+        return Err(unusable("--parameter", problem));
+    }
     if between.is_nan() || between <= 0.0 {
         let problem = format!(
             "by {shown} fruit do not differ in {of}: there is no spread to plan for; the campaign \
@@ -43,7 +51,17 @@ pub fn plan_population(request: &PopulationPlanRequest) -> Result<PlanOutcome, E
     }
     let within = match (request.within, &population.within_fruit) {
         (Some(within), _) => positive("--within", within)?,
-        (None, Some(covariance)) => sd(covariance, place),
+        (None, Some(covariance)) => {
+            let within = sd(covariance, place);
+            if within.is_nan() {
+                let problem = format!(
+                    "{shown} states a negative variance of {of} between the impacts of a fruit: \
+                     correct the card, or state --within"
+                );
+                return Err(unusable("--parameter", problem));
+            }
+            within
+        }
         (None, None) => {
             let problem =
                 format!("{shown} does not tell how the impacts of a fruit scatter: say it");
@@ -81,7 +99,7 @@ fn about(
             population.fruit
         ),
         "SD's error: standard error of the SD between fruit, in parts of it; SD of zero: \
-         probability that it is estimated as zero"
+         probability that it is estimated as zero; neither can be told of one impact on each fruit"
             .to_owned(),
     ]
 }
@@ -102,8 +120,11 @@ fn parameter<'a>(population: &'a CardPopulation, name: &str) -> Result<(usize, &
 }
 
 fn sd(covariance: &[Vec<f64>], place: usize) -> f64 {
-    let variance = covariance.get(place).and_then(|row| row.get(place));
-    variance.map_or(f64::NAN, |variance| variance.sqrt())
+    variance(covariance, place).map_or(f64::NAN, f64::sqrt)
+}
+
+fn variance(covariance: &[Vec<f64>], place: usize) -> Option<f64> {
+    covariance.get(place)?.get(place).copied()
 }
 
 /// Fruit below which an estimated spread is a poor base of a plan.

@@ -156,7 +156,10 @@ impl Question for SurfaceQuestion {
     }
 
     fn half_width_of(&self) -> &'static str {
-        "half-width of the response there"
+        match self.shape {
+            Some(_) => "half-width of the response there",
+            None => "half-width of the response at the centre",
+        }
     }
 
     fn is_closed_form(&self) -> bool {

@@ -47,12 +47,12 @@ pub fn plan_surface(request: &SurfacePlanRequest) -> Result<PlanOutcome, Error> 
     };
     let optimum = canonical(&surface);
     let (at, findings) = place(&coded, optimum.as_ref());
+    // told is the centre, where there is no optimum among the runs
+    let optimum = optimum.filter(|_| findings.is_empty());
     let question = SurfaceQuestion {
         about: about(request, &coded, &at, optimum.as_ref(), &scatter, &surface),
         at: terms_at(&terms, &at),
-        shape: optimum
-            .map(|own| own.shape)
-            .filter(|shape| *shape != Shape::Ridge),
+        shape: optimum.map(|own| own.shape),
         surface,
         x,
         inverse,
@@ -182,7 +182,7 @@ fn scatter_of(request: &SurfacePlanRequest, surface: &Surface) -> Result<KnownSc
     let own = &request.scatter;
     let stated = own.sd.is_some() || own.between.is_some() || own.within.is_some();
     if stated || own.from.is_some() || request.response.is_none() {
-        return known_scatter(own, 1);
+        return known_scatter(own, 1, &request.reading);
     }
     let sd = surface.fit.variance().sqrt();
     if !(sd.is_finite() && sd > 0.0) {
@@ -271,7 +271,14 @@ fn about(
         Some(Shape::Saddle) => "saddle",
         Some(Shape::Ridge) | None => "centre",
     };
-    vec![
+    let drawn = optimum.map(|_| {
+        format!(
+            "± of a factor: half of where 95 % of estimated optima lie; other shape: share of \
+             studies that find none; {} drawn studies of each size (seed {})",
+            request.simulation.simulations, request.simulation.seed
+        )
+    });
+    let known = [
         format!(
             "response surface of {} runs, {} coefficients; {shape}, {} at {}",
             coded.values.first().map_or(0, Vec::len),
@@ -280,10 +287,6 @@ fn about(
             settings.join(", ")
         ),
         scatter.words.clone(),
-        format!(
-            "± of a factor: half of where 95 % of estimated optima lie; other shape: share of \
-             studies that find none; {} drawn studies of each size (seed {})",
-            request.simulation.simulations, request.simulation.seed
-        ),
-    ]
+    ];
+    known.into_iter().chain(drawn).collect()
 }

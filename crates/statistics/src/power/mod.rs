@@ -1,5 +1,6 @@
 //! What a planned study can tell: power of tests and width of intervals, in closed form.
 
+pub mod drawn_slope;
 pub mod half_width;
 pub mod t_test;
 pub mod welch;
