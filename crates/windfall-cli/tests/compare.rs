@@ -253,3 +253,15 @@ fn rejects_wrong_requests() {
         run.error
     );
 }
+
+/// A number of fruit is no group.
+#[test]
+fn rejects_more_groups_than_can_be_compared() {
+    let rows = (0..2_002).map(|row| format!("f{},{}\n", row / 2, row % 7));
+    let (_folder, path) = table(&format!("g,k\n{}", rows.collect::<String>()));
+    let path = path.to_str().unwrap();
+    let run = windfall(&["compare", path, "--value", "k", "--by", "g"]);
+    assert_eq!(run.code, 2);
+    assert!(run.error.contains("makes 1001 groups"), "{}", run.error);
+    assert!(run.error.contains("--specimen"), "{}", run.error);
+}

@@ -25,6 +25,9 @@ use windfall_statistics::compare::group_summary::{Group, GroupSummary, Groups, s
 use windfall_statistics::compare::one_way_anova::{FTest, one_way_anova, welch_anova};
 use windfall_statistics::residuals::normality::shapiro_wilk;
 
+/// Most groups that are compared: of these there are half a million pairs.
+const MOST_GROUPS: usize = 1_000;
+
 /// What `windfall compare` is asked.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
@@ -98,6 +101,17 @@ pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error>
                 "{} has one group with values ({}); a comparison needs at least two",
                 request.by.join(", "),
                 found.unwrap_or_else(|| "none".to_owned())
+            ),
+        ));
+    }
+    if groups.groups.len() > MOST_GROUPS {
+        return Err(unusable(
+            "--by",
+            format!(
+                "{} makes {} groups, and at most {MOST_GROUPS} are compared in pairs: is it a \
+                 number of fruit? Name what they belong to, and the fruit with --specimen",
+                request.by.join(", "),
+                groups.groups.len()
             ),
         ));
     }
