@@ -3,6 +3,7 @@
 use crate::outcome::{PrecisionOutcome, ShareOutcome};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 use windfall_statistics::power::{Sides, Test};
 
 /// Name of the share of simulated intervals that hold the truth.
@@ -43,6 +44,17 @@ impl Levels {
             let error = (meant * (1.0 - meant) / n.max(1) as f64).sqrt();
             missed > 1.5 * meant && missed > meant + 3.0 * error
         })
+    }
+
+    /// Half-width of an interval: its mean, or what it stays below with the assurance.
+    ///
+    /// * `error`: true standard error
+    /// * `df`: degrees of freedom of its estimate
+    pub fn half_width(&self, error: f64, df: f64) -> f64 {
+        match self.assurance {
+            None => expected_half_width(error, df, self.confidence),
+            Some(assurance) => assured_half_width(error, df, self.confidence, assurance),
+        }
     }
 
     /// The test at 1 - confidence.
@@ -99,14 +111,21 @@ pub(crate) trait Question: Sync {
         1
     }
     /// What a study of a size takes in all.
-    fn count(&self, size: Size) -> Count;
+    fn count(&self, size: Size) -> Count {
+        Count {
+            fruit: size.fruit,
+            impacts: size.fruit * size.impacts,
+        }
+    }
     /// What a study of a size tells.
     ///
     /// # Errors
     /// Nothing can be told of this size.
     fn told(&self, size: Size, levels: &Levels) -> Result<Told, Error>;
-    /// Smallest effect that is found with a power.
-    fn detectable(&self, size: Size, levels: &Levels, power: f64) -> Option<f64>;
+    /// Smallest effect that is found with a power, where the question has one.
+    fn detectable(&self, _size: Size, _levels: &Levels, _power: f64) -> Option<f64> {
+        None
+    }
     /// Whether an effect is stated, so that there is a power.
     fn has_effect(&self) -> bool;
     /// Whether intervals have a half-width with an assurance.

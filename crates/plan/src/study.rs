@@ -88,7 +88,7 @@ pub(crate) fn read_study(
         return Err(unusable("--formula", problem));
     }
     let (kept, _) = complete_rows(&formula, &data.table, &[]).map_err(|error| data.told(error))?;
-    data.table = chosen_rows(&data.table, &kept);
+    data.table = chosen_rows(&data.table, &kept).into_owned();
     data.lines = kept.iter().map(|row| data.lines[*row]).collect();
     let study = study_of(&formula, &data)?;
     Ok((study, data))

@@ -5,7 +5,6 @@ use crate::question::{Count, Levels, Question, Size, Told};
 use crate::scatter::KnownScatter;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 use windfall_statistics::power::t_test::f_power;
 
 /// Means of groups of fruit, or of treatments of the same fruit.
@@ -77,20 +76,13 @@ impl Question for GroupsQuestion {
             .sum();
         let power = f_power(n * squares, k - 1.0, df, 1.0 - levels.confidence);
         let error = sd * (2.0 / n).sqrt();
-        let half_width = match levels.assurance {
-            None => expected_half_width(error, df, levels.confidence),
-            Some(assurance) => assured_half_width(error, df, levels.confidence, assurance),
-        };
+        let half_width = levels.half_width(error, df);
         Ok(Told {
             power: Some(exact(power)),
             half_width: Some(half_width),
             df: Some(df),
             ..Told::default()
         })
-    }
-
-    fn detectable(&self, _size: Size, _levels: &Levels, _power: f64) -> Option<f64> {
-        None
     }
 
     fn has_effect(&self) -> bool {

@@ -10,7 +10,6 @@ use windfall_statistics::power::drawn_slope::{
     drawn_slope_assured_half_width, drawn_slope_detectable, drawn_slope_half_width,
     drawn_slope_power,
 };
-use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 use windfall_statistics::power::t_test::{detectable_effect, t_power};
 use windfall_statistics::power::welch::{
     TwoGroups, true_error, welch_assured_half_width, welch_df, welch_half_width, welch_power,
@@ -242,10 +241,7 @@ impl Question for TQuestion {
                 let (error, df) = self.error(size);
                 (
                     effect.map(|effect| t_power(effect / error, df, test)),
-                    match levels.assurance {
-                        None => expected_half_width(error, df, confidence),
-                        Some(assurance) => assured_half_width(error, df, confidence, assurance),
-                    },
+                    levels.half_width(error, df),
                     df,
                 )
             }

@@ -93,10 +93,6 @@ impl Question for ModelQuestion {
         })
     }
 
-    fn detectable(&self, _size: Size, _levels: &Levels, _power: f64) -> Option<f64> {
-        None
-    }
-
     fn has_effect(&self) -> bool {
         true
     }

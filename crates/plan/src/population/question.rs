@@ -1,11 +1,10 @@
 //! Median and spread of a parameter over fruit as a question.
 
 use crate::outcome::PrecisionOutcome;
-use crate::question::{Count, Levels, Question, Size, Told};
+use crate::question::{Levels, Question, Size, Told};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_statistics::distribution::tail::f_upper;
-use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 
 /// A parameter of a population.
 pub(crate) struct PopulationQuestion {
@@ -64,21 +63,11 @@ impl Question for PopulationQuestion {
         Ok(2)
     }
 
-    fn count(&self, size: Size) -> Count {
-        Count {
-            fruit: size.fruit,
-            impacts: size.fruit * size.impacts,
-        }
-    }
-
     fn told(&self, size: Size, levels: &Levels) -> Result<Told, Error> {
         let (n, m) = (size.fruit as f64, size.impacts as f64);
         let error = self.between.hypot(self.within / m.sqrt()) / n.sqrt();
         let df = n - 1.0;
-        let half_width = match levels.assurance {
-            None => expected_half_width(error, df, levels.confidence),
-            Some(assurance) => assured_half_width(error, df, levels.confidence, assurance),
-        };
+        let half_width = levels.half_width(error, df);
         let also = |of: &str, value: f64| PrecisionOutcome {
             of: of.to_owned(),
             value,
@@ -93,10 +82,6 @@ impl Question for PopulationQuestion {
             },
             ..Told::default()
         })
-    }
-
-    fn detectable(&self, _size: Size, _levels: &Levels, _power: f64) -> Option<f64> {
-        None
     }
 
     fn has_effect(&self) -> bool {

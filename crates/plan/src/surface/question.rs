@@ -10,7 +10,6 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_signal::noise::gaussian::{noise_source, normal};
 use windfall_statistics::distribution::quantile::quantile;
-use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
 use windfall_statistics::surface::analysis::{Shape, Surface, canonical};
 
 /// A surface, its design and a place on it.
@@ -124,10 +123,7 @@ impl Question for SurfaceQuestion {
         let sd = self.scatter.scatter.of_fruit_mean(0, size.impacts);
         let leverage = (self.at.transpose() * &self.inverse * &self.at)[(0, 0)];
         let (error, df) = (sd * (leverage / n).sqrt(), n * runs - terms);
-        let half_width = match levels.assurance {
-            None => expected_half_width(error, df, levels.confidence),
-            Some(assurance) => assured_half_width(error, df, levels.confidence, assurance),
-        };
+        let half_width = levels.half_width(error, df);
         Ok(Told {
             half_width: Some(half_width),
             df: Some(df),
@@ -137,10 +133,6 @@ impl Question for SurfaceQuestion {
             },
             ..Told::default()
         })
-    }
-
-    fn detectable(&self, _size: Size, _levels: &Levels, _power: f64) -> Option<f64> {
-        None
     }
 
     fn has_effect(&self) -> bool {

@@ -88,7 +88,7 @@ fn read_runs(request: &SurfacePlanRequest) -> Result<(Data, CodedFactors, Vec<St
         );
         return Err(unusable("TABLE", problem));
     }
-    data.table = chosen_rows(&data.table, &kept);
+    data.table = chosen_rows(&data.table, &kept).into_owned();
     data.lines = kept.iter().map(|row| data.lines[*row]).collect();
     let coded = coded_factors(&data, &names, &request.ranges)?;
     Ok((data, coded, names))

@@ -9,6 +9,7 @@ use crate::model::lost_digits::{LostDigits, lost_digits};
 use crate::model::reduced::is_ordinary;
 use crate::table::{Cells, Table};
 use nalgebra::DMatrix;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// How terms of a formula became columns; kept for predictions.
@@ -74,7 +75,7 @@ pub fn model_rows(
             terms: formula.terms.len() + usize::from(formula.intercept),
         });
     }
-    let table = &chosen_rows(table, &kept);
+    let table = &*chosen_rows(table, &kept);
     let told = |error: Error| error.of_rows(&kept);
     let y = match &formula.response {
         Some(node) => values(node, table).map_err(told)?,
@@ -117,12 +118,12 @@ pub fn prediction_rows(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>
     matrix(frame, table)
 }
 
-/// Some rows of a table.
-pub fn chosen_rows(table: &Table, rows: &[usize]) -> Table {
-    let mut chosen = table.clone();
+/// Some rows of a table, in their order; the table itself where these are all.
+pub fn chosen_rows<'a>(table: &'a Table, rows: &[usize]) -> Cow<'a, Table> {
     if rows.len() == table.rows() && rows.iter().enumerate().all(|(place, row)| place == *row) {
-        return chosen;
+        return Cow::Borrowed(table);
     }
+    let mut chosen = table.clone();
     for column in &mut chosen.columns {
         match &mut column.cells {
             Cells::Numbers(numbers) => *numbers = rows.iter().map(|row| numbers[*row]).collect(),
@@ -131,7 +132,7 @@ pub fn chosen_rows(table: &Table, rows: &[usize]) -> Table {
             }
         }
     }
-    chosen
+    Cow::Owned(chosen)
 }
 
 /// Rows without missing cells, and those with and the first column that misses.

@@ -2,6 +2,7 @@
 
 use crate::model::expression::values;
 use crate::model::formula_syntax::{Kind, Node, Operator, spelling};
+use crate::model::model_frame::chosen_rows;
 use crate::table::Table;
 
 /// How a transformed response leads back to the column that it was made from.
@@ -32,10 +33,11 @@ impl OriginalScale {
     /// Of a response; `None` where it is a column as it is, or cannot be undone in every row: a
     /// square of values of both signs does not tell their signs.
     ///
-    /// * `table`: rows that were modelled
-    pub fn of(response: &Node, table: &Table) -> Option<Self> {
+    /// * `kept`: rows of the table that were modelled
+    pub fn of(response: &Node, table: &Table, kept: &[usize]) -> Option<Self> {
         let scale = Self::written(response)?;
-        let transformed = values(response, table).ok()?;
+        let table = chosen_rows(table, kept);
+        let transformed = values(response, &table).ok()?;
         let own = table.numbers(&scale.column).ok()?;
         let leads_back = |(own, transformed): (&f64, &f64)| {
             own.is_nan() || (scale.value(*transformed) - own).abs() <= 1e-6 * own.abs()
@@ -257,14 +259,17 @@ mod tests {
             }],
         };
         let both = table(&[-1.0, 2.0]);
-        let positive = table(&[0.5, 2.0, f64::NAN]);
+        let positive = table(&[0.5, 2.0, -1.0]);
         for text in ["k^2", "1 / k", "k^3", "(1 - k)^2"] {
             let node = parse(text).unwrap();
-            assert_eq!(OriginalScale::of(&node, &both), None, "{text}");
+            assert_eq!(OriginalScale::of(&node, &both, &[0, 1]), None, "{text}");
         }
         for text in ["k^2", "1 / k", "k^3", "log(k)"] {
             let node = parse(text).unwrap();
-            assert!(OriginalScale::of(&node, &positive).is_some(), "{text}");
+            assert!(
+                OriginalScale::of(&node, &positive, &[0, 1]).is_some(),
+                "{text}"
+            );
         }
     }
 }

@@ -116,11 +116,11 @@ pub fn quantile_panel(
         around.extend(band(|own| own.low));
         around.extend(band(|own| own.high).collect::<Vec<_>>().into_iter().rev());
     }
-    let band_of_all = format!("{} % band of all", percent(confidence));
+    let band_title = format!("{} % band", percent(confidence));
     let line = ordered.iter().map(|own| (own.score, own.expected));
     let dots = ordered.iter().map(|own| (own.score, own.value));
     let series = vec![
-        Series::new(band_of_all, Style::Band, around).coloured(1),
+        Series::new(band_title, Style::Band, around).coloured(1),
         Series::new("", Style::Dashed, line.collect()).coloured(6),
         Series::new("", Style::Dots, dots.collect()).coloured(0),
     ];

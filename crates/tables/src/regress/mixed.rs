@@ -69,7 +69,7 @@ pub fn regress_mixed(
     check(request)?;
     let (kept, left_out) =
         complete_rows(formula, &data.table, &[]).map_err(|error| data.told(error))?;
-    let table = chosen_rows(&data.table, &kept);
+    let table = chosen_rows(&data.table, &kept).into_owned();
     let chosen = Data {
         path: data.path.clone(),
         table,
@@ -115,7 +115,7 @@ pub fn regress_mixed(
         asked.as_ref(),
     ));
     let scale = formula.response.as_ref();
-    let scale = scale.and_then(|response| OriginalScale::of(response, &chosen.table));
+    let scale = scale.and_then(|response| OriginalScale::of(response, &data.table, &kept));
     let shares = variance_shares(&fitted.fit);
     let fit = &fitted.fit;
     Ok(MixedOutcome {

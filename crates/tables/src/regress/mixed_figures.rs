@@ -349,7 +349,7 @@ fn profiles(own: &MixedShown) -> Result<Painting, Error> {
         panels.push(profile_panel(own, interval, points, z));
     }
     let mut notes = vec![format!(
-        "A straight line is a likelihood of normal form. Broken lines: ± {z:.2}, where the {} % \
+        "A straight line means a normal likelihood. Broken lines: ± {z:.2}, where the {} % \
          interval ends.",
         percent(own.confidence)
     )];
@@ -422,7 +422,7 @@ fn profile_panel(
         VarianceParameter::Correlation { .. } => "correlation",
         _ => "standard deviation",
     };
-    let mut panel = Panel::new((x, &unit), ("signed root of the rise", ""), series);
+    let mut panel = Panel::new((x, &unit), ("signed root deviance", ""), series);
     if interval.estimate.is_finite() {
         panel.marks.push(Mark {
             label: String::new(),

@@ -30,9 +30,7 @@ use windfall_statistics::model::linear_model::{
     LinearFit, Quality, WholeModel, fit_reduced, predict,
 };
 use windfall_statistics::model::mean_contrasts::joint_test;
-use windfall_statistics::model::model_frame::{
-    ModelRows, chosen_rows, model_rows, prediction_rows,
-};
+use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::reduced::{Reduced, reduce_written};
 use windfall_statistics::model::selection::{Selection, select};
@@ -257,7 +255,7 @@ fn outcome(
     let scale = formula
         .response
         .as_ref()
-        .and_then(|response| OriginalScale::of(response, &chosen_rows(&data.table, &rows.kept)));
+        .and_then(|response| OriginalScale::of(response, &data.table, &rows.kept));
     let residuals = residual_tests(rows, fit);
     findings.extend(residual_findings(&residuals));
     Ok(RegressOutcome {
@@ -395,8 +393,10 @@ fn means(
     rows: &ModelRows,
     fit: &LinearFit,
 ) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
-    let asked = !request.after.means.is_empty() || !request.after.slopes.is_empty();
-    if asked && request.select.is_some() {
+    if request.after.is_empty() {
+        return Ok((Vec::new(), Vec::new()));
+    }
+    if request.select.is_some() {
         let problem = "means of a model whose terms were selected leave out what the selection \
                        costs: fit the chosen terms without --select";
         return Err(unusable("--means", problem));

@@ -199,7 +199,7 @@ fn keep_complete(
     }
     let (kept, left_out) = rows_with_all(&data.table, &names).map_err(|error| data.told(error))?;
     let findings = left_out_finding(&left_out, &data.lines);
-    data.table = chosen_rows(&data.table, &kept);
+    data.table = chosen_rows(&data.table, &kept).into_owned();
     data.lines = kept.iter().map(|row| data.lines[*row]).collect();
     match kept.is_empty() {
         true => Err(Error::TableWithoutRows {

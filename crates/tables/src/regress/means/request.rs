@@ -78,6 +78,11 @@ pub(crate) enum Which {
 }
 
 impl MeansRequest {
+    /// Whether nothing is asked.
+    pub(crate) fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Columns of all means and slopes, in the order in which they were asked for.
     ///
     /// # Errors

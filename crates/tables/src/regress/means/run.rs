@@ -107,7 +107,7 @@ impl Asking<'_> {
         let scale = match columns.slope {
             Some(_) => None,
             None => self.model.response.and_then(|response| {
-                let scale = OriginalScale::of(response, self.table)?;
+                let scale = OriginalScale::of(response, self.model.table, self.model.kept)?;
                 Some((meaning(&scale, response), scale))
             }),
         };
