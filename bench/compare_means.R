@@ -176,3 +176,10 @@ check_means("control, Satterthwaite", fruit, k ~ variety + v + (1 | lot), "varie
 check_means("slopes, Kenward-Roger", fruit, k ~ variety * v + (1 | lot), "variety", slope = "v", adjust = "holm", mixed = "kenward-roger")
 check_means("trends, Satterthwaite", fruit, k ~ dose + v + (1 | lot), "dose", which = "polynomial", levels = ordered, mixed = "satterthwaite")
 check_means("logarithm, Satterthwaite", fruit, log(k) ~ variety + v + (1 | lot), "variety", which = "control", mixed = "satterthwaite")
+# Tables of other people: emmeans' and R's own.
+pigs <- transform(emmeans::pigs, source = as.character(source), percent = paste0("p", percent))
+protein <- list(percent = c("p9", "p12", "p15", "p18"))
+check_means("pigs, trend of a logarithm", pigs, log(conc) ~ source + percent, "percent", which = "polynomial", levels = protein)
+check_means("pigs, sources", pigs, log(conc) ~ source * percent, "source", "percent", levels = protein)
+check_means("looms", transform(warpbreaks, wool = as.character(wool), tension = as.character(tension)), sqrt(breaks) ~ wool * tension, "tension", "wool", which = "control=L")
+check_means("oats, Kenward-Roger", oats, yield ~ variety + nitro + (1 | block / variety), "variety", adjust = "holm", mixed = "kenward-roger")
