@@ -240,6 +240,7 @@ check_blocks("ccd of 3 in 3 blocks", 3, "--blocks 3")
 check_blocks("ccd of 4 in 3 blocks", 4, "--blocks 3")
 check_blocks("ccd of 5 in 5 blocks", 5, "--blocks 5")
 
+source("bench/compare_surfaces.R")
 source("bench/compare_figures.R")
 source("bench/compare_plan.R")
 

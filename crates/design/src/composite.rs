@@ -217,6 +217,7 @@ fn lay_out(
             design.runs.push(Run {
                 standard_order: 0,
                 block: axial_block,
+                whole_plot: None,
                 point: Point::Axial,
                 coded,
             });

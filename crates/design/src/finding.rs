@@ -30,6 +30,16 @@ pub enum DesignFinding {
          with the settings if the printed ones were"
     )]
     SettingsRounded { factor: String, coded: f64 },
+    #[error(
+        "{plots} whole plots determine the terms of the hard-to-change factors and leave nothing to \
+         tell the scatter between whole plots: these terms will have no honest test; add whole plots"
+    )]
+    NoWholePlotError { plots: usize },
+    #[error(
+        "{runs} runs leave nothing to tell the scatter within whole plots: add runs, or leave out \
+         terms"
+    )]
+    NoErrorWithinPlots { runs: usize },
     #[error("with {decimals} decimals two levels of {factor} are printed as one number")]
     SettingsMerged { factor: String, decimals: usize },
 }
@@ -44,6 +54,8 @@ impl DesignFinding {
             Self::NotPowerOfTwo { .. } => "not-power-of-two",
             Self::SpreadNotImproved { .. } => "spread-not-improved",
             Self::SettingsRounded { .. } => "settings-rounded",
+            Self::NoWholePlotError { .. } => "no-whole-plot-error",
+            Self::NoErrorWithinPlots { .. } => "no-error-within-plots",
             Self::SettingsMerged { .. } => "settings-merged",
         }
     }

@@ -158,6 +158,8 @@ pub struct Run {
     pub standard_order: usize,
     /// Block, from 1.
     pub block: usize,
+    /// Whole plot of a split-plot design, from 1 in the order of the runs; `None` without.
+    pub whole_plot: Option<usize>,
     /// Where it lies.
     pub point: Point,
     /// Coded values, one per factor, exact.
@@ -188,6 +190,11 @@ impl Design {
     pub fn blocks(&self) -> usize {
         self.runs.iter().map(|run| run.block).max().unwrap_or(0)
     }
+
+    /// Number of whole plots; `None` unless it is a split-plot design.
+    pub fn whole_plots(&self) -> Option<usize> {
+        self.runs.iter().filter_map(|run| run.whole_plot).max()
+    }
 }
 
 /// A design of coded points in standard order, all in block 1.
@@ -196,6 +203,7 @@ pub fn design_of(kind: String, factors: Vec<Factor>, points: Vec<(Point, Vec<f64
     let runs = runs.map(|(index, (point, coded))| Run {
         standard_order: index + 1,
         block: 1,
+        whole_plot: None,
         point,
         coded,
     });
@@ -216,6 +224,7 @@ pub fn add_centres(design: &mut Design, block: usize, count: usize) {
         design.runs.push(Run {
             standard_order: design.runs.len() + 1,
             block,
+            whole_plot: None,
             point: Point::Centre,
             coded: vec![0.0; design.factors.len()],
         });
@@ -230,18 +239,31 @@ pub fn number_by_block(design: &mut Design) {
     }
 }
 
-/// The design with its runs in random order within each block.
+/// The design with its runs in random order within each block, or with its whole plots in random
+/// order and the runs of each in theirs.
 pub fn randomised(mut design: Design, seed: u64) -> Design {
     let mut generator = generator(seed, ORDER_STREAM);
     design
         .runs
         .sort_by_key(|run| (run.block, run.standard_order));
+    let mut plots: Vec<usize> = design
+        .runs
+        .iter()
+        .filter_map(|run| run.whole_plot)
+        .collect();
+    plots.dedup();
     for block in design.runs.chunk_by_mut(|a, b| a.block == b.block) {
         // What has been run has its order.
         if block.iter().any(|run| run.point != Point::Existing) {
             shuffle(&mut generator, block);
         }
     }
+    shuffle(&mut generator, &mut plots);
+    let place = |plot: usize| plots.iter().position(|own| *own == plot).map(|own| own + 1);
+    for run in &mut design.runs {
+        run.whole_plot = run.whole_plot.and_then(place);
+    }
+    design.runs.sort_by_key(|run| (run.block, run.whole_plot));
     design.order_seed = Some(seed);
     design
 }

@@ -17,4 +17,5 @@ pub mod quality;
 pub mod random;
 pub mod sobol;
 mod sobol_table;
+pub mod split_plot;
 pub mod word;

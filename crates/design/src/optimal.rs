@@ -258,7 +258,7 @@ fn region_of(
 }
 
 /// Mean of row · rowᵀ.
-fn moments(region: &[(f64, Vec<f64>)], terms: usize) -> DMatrix<f64> {
+pub(crate) fn moments(region: &[(f64, Vec<f64>)], terms: usize) -> DMatrix<f64> {
     let mut moments = DMatrix::zeros(terms, terms);
     for (weight, row) in region {
         let row = DVector::from_column_slice(row);
@@ -267,7 +267,7 @@ fn moments(region: &[(f64, Vec<f64>)], terms: usize) -> DMatrix<f64> {
     moments
 }
 
-fn check_levels(factors: &[Factor], levels: &[Vec<f64>]) -> Result<(), DesignError> {
+pub(crate) fn check_levels(factors: &[Factor], levels: &[Vec<f64>]) -> Result<(), DesignError> {
     if levels.len() != factors.len() {
         return Err(DesignError::PointLength {
             point: 1,
@@ -299,7 +299,7 @@ fn check_points(points: &[Vec<f64>], expected: usize) -> Result<(), DesignError>
     }
 }
 
-fn check_defined(rows: &[Vec<f64>], points: &[Vec<f64>]) -> Result<(), DesignError> {
+pub(crate) fn check_defined(rows: &[Vec<f64>], points: &[Vec<f64>]) -> Result<(), DesignError> {
     let undefined = |row: &Vec<f64>| row.iter().any(|value| !value.is_finite());
     match rows.iter().position(undefined) {
         Some(place) => Err(DesignError::ModelUndefined {

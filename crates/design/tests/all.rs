@@ -6,3 +6,4 @@ mod design_box_behnken;
 mod design_composite;
 mod design_factorial;
 mod design_optimal;
+mod design_split_plot;

@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::convert::Infallible;
+use windfall_design::exchange::Criterion as Optimality;
 use windfall_files::option_value::chosen;
 use windfall_statistics::mixed::fit::MixedMethod;
 use windfall_statistics::model::anova::AnovaType;
@@ -58,6 +59,18 @@ pub(crate) fn anova_type() -> impl TypedValueParser<Value = AnovaType> {
             2 => AnovaType::Hierarchical,
             _ => AnovaType::Partial,
         })
+}
+
+/// What is made good by an exchange of runs.
+pub(crate) fn optimality() -> impl TypedValueParser<Value = Optimality> {
+    PossibleValuesParser::new([
+        PossibleValue::new("d").help("The volume of the confidence region of the coefficients"),
+        PossibleValue::new("i").help("The mean variance of predictions"),
+    ])
+    .try_map(|word| {
+        let kinds = [("d", Optimality::D), ("i", Optimality::I)];
+        chosen("--criterion", &word, &kinds)
+    })
 }
 
 /// How many settings as good as the best are listed.

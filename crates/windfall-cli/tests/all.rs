@@ -40,6 +40,7 @@ mod serve;
 mod several_contacts;
 mod stopped_runs;
 mod surface_blocks;
+mod surface_random;
 mod table_figures;
 mod tables;
 mod user_laws;

@@ -10,7 +10,8 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_signal::noise::gaussian::{noise_source, normal};
 use windfall_statistics::distribution::quantile::quantile;
-use windfall_statistics::surface::analysis::{Shape, Surface, canonical};
+use windfall_statistics::surface::analysis::Surface;
+use windfall_statistics::surface::canonical::{Shape, canonical};
 
 /// A surface, its design and a place on it.
 pub(crate) struct SurfaceQuestion {

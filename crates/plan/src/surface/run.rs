@@ -16,7 +16,8 @@ use windfall_files::table::data::Data;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::number;
 use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
-use windfall_statistics::surface::analysis::{Canonical, Shape, Surface, canonical, fit_surface};
+use windfall_statistics::surface::analysis::{Surface, fit_surface};
+use windfall_statistics::surface::canonical::{Canonical, Shape, canonical};
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::terms::{
     SurfaceTerms, monomial_name, monomial_value, surface_terms,

@@ -147,8 +147,10 @@ fn row(term: &str, ss: f64, df: usize, (residual_ss, residual_df): (f64, usize))
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SumOfSquares {
     /// Sum of squares.
+    #[schema(value_type = Option<f64>)]
     pub ss: f64,
     /// Degrees of freedom.
+    #[schema(value_type = Option<f64>)]
     pub df: f64,
 }
 

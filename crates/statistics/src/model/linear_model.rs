@@ -96,8 +96,8 @@ pub fn fit_reduced(
     let (residuals, leverages) = residuals_and_leverages(x, y, &solved);
     let unscaled = &solved.inverse * solved.inverse.transpose();
     let variance = residual_ss / residual_df as f64;
-    let names = &frame.names;
-    let quantile = student_quantile(0.5 + 0.5 * confidence, residual_df as f64);
+    let df = residual_df as f64;
+    let quantile = student_quantile(0.5 + 0.5 * confidence, df);
     let coefficients = solved
         .columns
         .iter()
@@ -106,13 +106,7 @@ pub fn fit_reduced(
         .map(|(place, (column, estimate))| {
             let row = solved.inverse.row(place);
             let se = (variance * row.dot(&row)).sqrt();
-            coefficient(
-                &names[*column],
-                estimate.value(),
-                se,
-                residual_df as f64,
-                quantile,
-            )
+            coefficient(&frame.names[*column], estimate.value(), se, df, quantile)
         })
         .collect();
     Ok(LinearFit {
@@ -245,6 +239,7 @@ pub fn student_quantile(probability: f64, df: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct WholeModel {
     /// Sum of squares.
+    #[schema(value_type = Option<f64>)]
     pub ss: f64,
     /// Degrees of freedom, without the intercept.
     pub df: f64,
@@ -274,10 +269,13 @@ pub struct Quality {
     /// Part of the total sum of squares that is described.
     pub r2: f64,
     /// The same per degree of freedom.
+    #[schema(value_type = Option<f64>)]
     pub r2_adjusted: f64,
     /// Part of the total that predictions of each row by a fit without it describe.
+    #[schema(value_type = Option<f64>)]
     pub r2_predicted: f64,
     /// Sum of squares of these errors; infinite where a row decides a coefficient alone.
+    #[schema(value_type = Option<f64>)]
     pub press: f64,
     /// Range of predictions over their mean standard error; more than 4 is wanted.
     pub adequate_precision: f64,

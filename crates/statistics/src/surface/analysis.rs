@@ -1,19 +1,21 @@
 //! Response surfaces: polynomials of coded factors.
 
 use crate::error::Error;
+use crate::mixed::term::RandomTerm;
 use crate::model::anova::{LackOfFit, lack_of_fit};
 use crate::model::contrast::Contrast;
 use crate::model::linear_model::{LinearFit, Prediction, fit_reduced, predict};
 use crate::model::model_frame::{ModelFrame, TermColumns};
 use crate::model::reduced::{Reduced, reduce};
 use crate::surface::coding::FactorCoding;
+use crate::surface::random_groups::RandomGroups;
 use crate::surface::terms::{Monomial, SurfaceTerms, monomial_name, monomial_value};
 use crate::table::Categories;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// A fitted surface.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Surface {
     /// Its factors.
     pub factors: Vec<FactorCoding>,
@@ -23,7 +25,8 @@ pub struct Surface {
     pub coded: Vec<f64>,
     /// Terms of the same polynomial in actual units with their coefficients.
     pub actual: Vec<(Monomial, f64)>,
-    /// The fit.
+    /// The fit by least squares; where groups are random, it tells which terms can be estimated,
+    /// and `random` has the estimates.
     pub fit: LinearFit,
     /// Columns of the fit.
     pub frame: ModelFrame,
@@ -33,6 +36,8 @@ pub struct Surface {
     pub x: DMatrix<f64>,
     /// Block of each run, where there are blocks.
     pub blocks: Option<Categories>,
+    /// The fit with random groups, where there are any.
+    pub random: Option<RandomGroups>,
 }
 
 /// Fits a surface.
@@ -83,22 +88,31 @@ pub fn fit_surface_in_blocks(
     let reduced = reduce(&x, y);
     let fit = fit_reduced(&frame, &x, y, &reduced, &wanted, confidence)?;
     let fit = fit.in_blocks(&reduced, &block_columns);
-    let mut coefficients = vec![0.0; x.ncols()];
-    for (column, coefficient) in fit.columns.iter().zip(&fit.coefficients) {
-        coefficients[*column] = coefficient.estimate;
-    }
-    coefficients.truncate(own);
+    let estimates = fit.coefficients.iter().map(|own| own.estimate);
+    let coded = coded_terms(&fit.columns, estimates, own);
     Ok(Surface {
-        actual: actual_terms(factors, &terms.monomials, &coefficients),
+        actual: actual_terms(factors, &terms.monomials, &coded),
         factors: factors.to_vec(),
         terms: terms.clone(),
-        coded: coefficients,
+        coded,
         fit,
         frame,
         reduced,
         x,
         blocks: blocks.cloned(),
+        random: None,
     })
+}
+
+/// Coefficients of the intercept and all terms, from those of the estimated columns.
+fn coded_terms(columns: &[usize], estimates: impl Iterator<Item = f64>, count: usize) -> Vec<f64> {
+    let mut coded = vec![0.0; count];
+    for (column, estimate) in columns.iter().zip(estimates) {
+        if let Some(own) = coded.get_mut(*column) {
+            *own = estimate;
+        }
+    }
+    coded
 }
 
 /// Contrasts of the blocks against their mean, a row for each run.
@@ -193,6 +207,28 @@ fn actual_terms(
 }
 
 impl Surface {
+    /// The same surface of runs in random groups, as days or whole plots are.
+    ///
+    /// # Errors
+    /// As [`RandomGroups::of`].
+    pub fn in_random_groups(mut self, y: &[f64], terms: Vec<RandomTerm>) -> Result<Self, Error> {
+        let random = RandomGroups::of(&self.fit, &self.x, y, terms)?;
+        let estimates = random.fit.coefficients.iter().copied();
+        self.coded = coded_terms(&random.columns, estimates, self.coded.len());
+        self.actual = actual_terms(&self.factors, &self.terms.monomials, &self.coded);
+        self.random = Some(random);
+        Ok(self)
+    }
+
+    /// The estimate of a column of the model matrix; `None` where it is aliased.
+    fn estimate(&self, column: usize) -> Option<f64> {
+        let place = self.fit.columns.iter().position(|own| *own == column)?;
+        Some(match &self.random {
+            Some(random) => random.fit.coefficients[place],
+            None => self.fit.coefficients[place].estimate,
+        })
+    }
+
     /// Value at coded settings.
     pub fn value(&self, point: &[f64]) -> f64 {
         let terms = self.terms.monomials.iter().zip(&self.coded[1..]);
@@ -216,11 +252,15 @@ impl Surface {
         (0..self.factors.len()).map(slope).collect()
     }
 
-    /// Predictions at coded settings, at the mean of the blocks.
+    /// Predictions at coded settings, at the mean of the blocks and for new random groups.
     pub fn predict(&self, points: &[Vec<f64>]) -> Vec<Prediction> {
         let count = self.x.ncols() - self.coded.len();
         let mean = DMatrix::zeros(points.len(), count);
-        predict(&self.fit, &rows_of(&self.terms.monomials, points, &mean))
+        let rows = rows_of(&self.terms.monomials, points, &mean);
+        match &self.random {
+            Some(random) => random.predict(&rows),
+            None => predict(&self.fit, &rows),
+        }
     }
 
     /// Columns that stand for blocks.
@@ -234,9 +274,8 @@ impl Surface {
         let Some(blocks) = &self.blocks else {
             return Vec::new();
         };
-        let place = |column: usize| self.fit.columns.iter().position(|own| *own == column);
-        let estimate = |column| Some(self.fit.coefficients[place(column)?].estimate);
-        let found: Option<Vec<f64>> = self.block_columns().into_iter().map(estimate).collect();
+        let columns = self.block_columns().into_iter();
+        let found: Option<Vec<f64>> = columns.map(|column| self.estimate(column)).collect();
         let Some(mut effects) = found else {
             return Vec::new();
         };
@@ -251,8 +290,12 @@ impl Surface {
     }
 }
 
-/// Lack of fit and pure error; `None` where no run is repeated within its block.
+/// Lack of fit and pure error; `None` where no run is repeated within its block, and with random
+/// groups, where residuals have no single variance.
 pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> Option<LackOfFit> {
+    if surface.random.is_some() {
+        return None;
+    }
     let code = |row: usize| surface.blocks.as_ref().and_then(|own| own.codes[row]);
     let settings = DMatrix::from_fn(y.len(), coded.len() + 1, |row, factor| {
         match coded.get(factor) {
@@ -266,189 +309,4 @@ pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> 
         surface.fit.residual_ss,
         surface.fit.residual_df,
     )
-}
-
-/// Where a quadratic surface is flat, and how it curves there (Box & Draper 2007,
-/// Response Surfaces, Mixtures, and Ridge Analyses, 2nd ed., ch. 10).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Canonical {
-    /// The stationary point in coded units, the one nearest to the centre of a line.
-    pub stationary: Vec<f64>,
-    /// Its distance from the centre in coded units.
-    pub distance: f64,
-    /// The response there.
-    pub value: f64,
-    /// Curvatures, most negative first.
-    pub eigenvalues: Vec<f64>,
-    /// Directions of these in coded units, one for each.
-    pub directions: Vec<Vec<f64>>,
-    /// What it is.
-    pub shape: Shape,
-}
-
-/// What a stationary point is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// Every way leads down.
-    Maximum,
-    /// Every way leads up.
-    Minimum,
-    /// Some ways up, some down.
-    Saddle,
-    /// Along some ways next to nothing changes: the point is not determined.
-    Ridge,
-}
-
-/// Curvature below this part of the largest is none.
-const FLAT: f64 = 1e-3;
-
-/// Analyses a surface of second degree; `None` without curvature or of higher degree.
-pub fn canonical(surface: &Surface) -> Option<Canonical> {
-    let (slopes, curvature) = quadratic_form(surface)?;
-    let eigen = curvature.clone().symmetric_eigen();
-    let largest = eigen.eigenvalues.amax();
-    // Rounding alone is no curvature.
-    if largest <= 1e-12 * slopes.amax() || largest == 0.0 {
-        return None;
-    }
-    let mut order: Vec<usize> = (0..slopes.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    // Directions without any curvature have no stationary point of their own.
-    let mut stationary = DVector::zeros(slopes.len());
-    for place in &order {
-        let value = eigen.eigenvalues[*place];
-        if value.abs() > 1e-12 * largest {
-            let direction = eigen.eigenvectors.column(*place);
-            stationary -= direction * (direction.dot(&slopes) / (2.0 * value));
-        }
-    }
-    let eigenvalues: Vec<f64> = order
-        .iter()
-        .map(|place| eigen.eigenvalues[*place])
-        .collect();
-    let flat = eigenvalues.iter().any(|value| value.abs() < FLAT * largest);
-    let shape = match (flat, eigenvalues[0] > 0.0, *eigenvalues.last()? < 0.0) {
-        (true, ..) => Shape::Ridge,
-        (_, true, _) => Shape::Minimum,
-        (_, _, true) => Shape::Maximum,
-        _ => Shape::Saddle,
-    };
-    let point: Vec<f64> = stationary.iter().copied().collect();
-    Some(Canonical {
-        distance: stationary.norm(),
-        value: surface.value(&point),
-        directions: order
-            .iter()
-            .map(|place| upright(eigen.eigenvectors.column(*place).iter().copied().collect()))
-            .collect(),
-        eigenvalues,
-        shape,
-        stationary: point,
-    })
-}
-
-/// A direction whose largest part is positive.
-fn upright(direction: Vec<f64>) -> Vec<f64> {
-    let largest = direction
-        .iter()
-        .copied()
-        .max_by(|a, b| a.abs().total_cmp(&b.abs()));
-    match largest.is_some_and(|value| value < 0.0) {
-        true => direction.iter().map(|value| -value).collect(),
-        false => direction,
-    }
-}
-
-/// Slopes at the centre and the symmetric matrix of curvature.
-fn quadratic_form(surface: &Surface) -> Option<(DVector<f64>, DMatrix<f64>)> {
-    let count = surface.factors.len();
-    if surface.degree() != 2 {
-        return None;
-    }
-    let mut slopes = DVector::zeros(count);
-    let mut curvature = DMatrix::zeros(count, count);
-    for (monomial, b) in surface.terms.monomials.iter().zip(&surface.coded[1..]) {
-        let places: Vec<usize> = (0..count)
-            .flat_map(|place| std::iter::repeat_n(place, monomial[place] as usize))
-            .collect();
-        match places[..] {
-            [one] => slopes[one] = *b,
-            [one, two] if one == two => curvature[(one, one)] = *b,
-            [one, two] => {
-                curvature[(one, two)] = 0.5 * b;
-                curvature[(two, one)] = 0.5 * b;
-            }
-            _ => return None,
-        }
-    }
-    Some((slopes, curvature))
-}
-
-/// A point of a ridge: the best at a distance from the centre.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RidgePoint {
-    /// Distance from the centre in coded units.
-    pub radius: f64,
-    /// The point in coded units.
-    pub point: Vec<f64>,
-    /// The response there.
-    pub value: f64,
-}
-
-/// Best points of a quadratic surface at distances from the centre (Draper 1963,
-/// Technometrics 5, 469-479).
-///
-/// * `maximum`: whether the best is the largest
-pub fn ridge(surface: &Surface, radii: &[f64], maximum: bool) -> Vec<RidgePoint> {
-    let Some((slopes, curvature)) = quadratic_form(surface) else {
-        return Vec::new();
-    };
-    let sign = if maximum { 1.0 } else { -1.0 };
-    let eigen = (curvature * sign).symmetric_eigen();
-    let along = eigen.eigenvectors.transpose() * (slopes * sign);
-    let top = eigen.eigenvalues.max();
-    // Beyond the largest curvature the distance falls as the multiplier grows.
-    let part = |multiplier: f64, place: usize| {
-        along[place] / (2.0 * (multiplier - eigen.eigenvalues[place]))
-    };
-    let length = |multiplier: f64| -> f64 {
-        let parts = (0..along.len()).map(|place| part(multiplier, place).powi(2));
-        parts.sum::<f64>().sqrt()
-    };
-    let scale = along.norm().max(top.abs()).max(f64::MIN_POSITIVE);
-    radii
-        .iter()
-        .map(|radius| {
-            let mut parts: Vec<f64> = vec![0.0; along.len()];
-            if *radius > 0.0 {
-                // With hardly any slope along the steepest curvature, the multiplier
-                // ends at that curvature and the rest of the way is along it.
-                let mut low = top + 1e-13 * scale;
-                let mut high = top + along.norm() / radius + scale;
-                for _ in 0..200 {
-                    let middle = 0.5 * (low + high);
-                    match length(middle) > *radius {
-                        true => low = middle,
-                        false => high = middle,
-                    }
-                }
-                let multiplier = 0.5 * (low + high);
-                (0..parts.len()).for_each(|place| parts[place] = part(multiplier, place));
-                let short = radius * radius - parts.iter().map(|p| p * p).sum::<f64>();
-                if short > 1e-9 * radius * radius {
-                    let steepest = eigen.eigenvalues.imax();
-                    let own = parts[steepest];
-                    let sign = if own < 0.0 { -1.0 } else { 1.0 };
-                    parts[steepest] = sign * (own * own + short).sqrt();
-                }
-            }
-            let point = &eigen.eigenvectors * DVector::from_vec(parts);
-            let point: Vec<f64> = point.iter().copied().collect();
-            RidgePoint {
-                radius: *radius,
-                value: surface.value(&point),
-                point,
-            }
-        })
-        .collect()
 }

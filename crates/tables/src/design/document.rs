@@ -22,6 +22,8 @@ pub struct DesignDocument {
     pub runs: Vec<RunDocument>,
     /// Number of blocks.
     pub blocks: usize,
+    /// Number of whole plots of a split-plot design; null for other designs.
+    pub whole_plots: Option<usize>,
     /// Seed of the run order; null in standard order.
     pub seed: Option<u64>,
     /// Axial distance of a composite design, in half-ranges.
@@ -55,6 +57,8 @@ pub struct RunDocument {
     pub standard_order: usize,
     /// Block, from 1.
     pub block: usize,
+    /// Whole plot of a split-plot design, from 1; null in other designs.
+    pub whole_plot: Option<usize>,
     /// Where it lies.
     pub point: &'static str,
     /// Exact coded values.
@@ -126,6 +130,7 @@ pub fn design_document(outcome: &DesignOutcome) -> DesignDocument {
         factors: factor_documents(&design.factors),
         runs: run_documents(design),
         blocks: design.blocks(),
+        whole_plots: design.whole_plots(),
         seed: design.order_seed,
         alpha: design.alpha,
         fraction,
@@ -168,6 +173,7 @@ fn run_documents(design: &Design) -> Vec<RunDocument> {
             run: index + 1,
             standard_order: run.standard_order,
             block: run.block,
+            whole_plot: run.whole_plot,
             point: run.point.name(),
             coded: run.coded.clone(),
             settings: design.factors.iter().zip(&run.coded).map(setting).collect(),

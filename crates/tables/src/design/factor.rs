@@ -20,6 +20,14 @@ pub const OWN_COLUMNS: [&str; 4] = ["run", "standard_order", "block", "point"];
 /// End of the names of columns with coded values.
 pub const CODED: &str = "_coded";
 
+/// Factors of the command line.
+///
+/// # Errors
+/// As [`parse_factor`].
+pub fn factors_of(texts: &[String]) -> Result<Vec<DesignFactor>, Error> {
+    texts.iter().map(|text| parse_factor(text)).collect()
+}
+
 /// Reads a factor.
 ///
 /// * `k=0.44..0.86 N/mm`: a range, with a unit if there is one

@@ -11,8 +11,9 @@
 //! ```
 //!
 //! These lines hold no comma, semicolon or quote, so that spreadsheets preserve them but
-//! for separators at their ends. The columns are `run`, `standard_order`, `block`, `point`,
-//! the setting of each factor, and the exact coded value of each number (`k_coded`).
+//! for separators at their ends. The columns are `run`, `standard_order`, `block`, in a
+//! split-plot design `whole_plot`, `point`, the setting of each factor, and the exact coded
+//! value of each number (`k_coded`).
 
 use crate::design::factor::{CODED, fifteen_digits};
 use std::path::Path;
@@ -22,6 +23,9 @@ use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::table::write::csv_text;
 use windfall_files::write_file::write_new;
+
+/// The column of whole plots of a split-plot design.
+pub const WHOLE_PLOT: &str = "whole_plot";
 
 /// Beginning of the line of a factor.
 const FACTOR: &str = "factor ";
@@ -33,9 +37,11 @@ const ONE_OF: &str = "one of ";
 ///
 /// * `about`: lines of the header beside those of the design itself
 pub fn write_design(design: &Design, about: &[String]) -> Result<String, Error> {
-    let mut header: Vec<String> = ["run", "standard_order", "block", "point"]
+    let mut header: Vec<String> = ["run", "standard_order", "block"]
         .map(str::to_owned)
         .to_vec();
+    header.extend(design.whole_plots().map(|_| WHOLE_PLOT.to_owned()));
+    header.push("point".to_owned());
     header.extend(design.factors.iter().map(|factor| factor.name.clone()));
     let numbers = || design.factors.iter().filter(|f| f.categories.is_empty());
     header.extend(numbers().map(|factor| format!("{}{CODED}", factor.name)));
@@ -44,8 +50,9 @@ pub fn write_design(design: &Design, about: &[String]) -> Result<String, Error> 
             (index + 1).to_string(),
             run.standard_order.to_string(),
             run.block.to_string(),
-            run.point.name().to_owned(),
         ];
+        row.extend(run.whole_plot.map(|plot| plot.to_string()));
+        row.push(run.point.name().to_owned());
         let pairs = || design.factors.iter().zip(&run.coded);
         row.extend(pairs().map(|(factor, coded)| setting_text(factor, *coded)));
         let coded = pairs().filter(|(factor, _)| factor.categories.is_empty());

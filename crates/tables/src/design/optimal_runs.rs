@@ -1,14 +1,15 @@
 //! Optimal designs from texts: model, levels, candidates and existing runs.
 
-use crate::design::factor::{CODED, DesignFactor, parse_factor};
+use crate::design::factor::{CODED, DesignFactor, factors_of};
 use crate::design::file::read_coding;
 use crate::design::model_row::{RowModel, row_at, row_model};
-use crate::design::request::{Criterion, OptimalRequest};
+use crate::design::request::{Criterion, OptimalRequest, SplitPlotRequest};
 use std::path::Path;
 use windfall_design::error::DesignError;
 use windfall_design::kind::{Design, Factor, evenly};
 use windfall_design::model::DesignModel;
 use windfall_design::optimal::{Candidates, OptimalOptions, optimal};
+use windfall_design::split_plot::{SplitPlotOptions, split_plot};
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
@@ -29,10 +30,7 @@ pub fn optimal_design(
     factors: &[String],
     seed: u64,
 ) -> Result<(Design, RowModel), Error> {
-    let given: Vec<DesignFactor> = factors
-        .iter()
-        .map(|text| parse_factor(text))
-        .collect::<Result<_, _>>()?;
+    let given = factors_of(factors)?;
     let tables: [Option<(&Path, Data)>; 2] = [
         table_of(request.augment.as_deref())?,
         table_of(request.candidates.as_deref())?,
@@ -58,22 +56,72 @@ pub fn optimal_design(
     let make =
         |candidates: Candidates| optimal(factors.clone(), &row, candidates, &existing, &options);
     let design = match &listed {
-        Some(points) => make(Candidates::Points(points)),
-        None => {
-            let mut counts = level_counts(&model, request.points)?;
-            loop {
-                let count = counts.remove(0);
-                let made = make(Candidates::Levels(&levels_of(&given, count)));
-                // More levels may tell more terms apart.
-                match made {
-                    Err(DesignError::ModelSingular { .. }) if !counts.is_empty() => {}
-                    made => break made,
-                }
-            }
-        }
+        Some(points) => make(Candidates::Points(points)).map_err(impossible)?,
+        None => with_levels(&model, &given, request.points, |levels| {
+            make(Candidates::Levels(levels))
+        })?,
     };
-    let design = design.map_err(|error| unusable("windfall design", error.to_string()))?;
     Ok((design, model))
+}
+
+/// A split-plot design with its model.
+///
+/// # Errors
+/// Texts that cannot be used, a design that cannot be.
+pub fn split_plot_design(
+    request: &SplitPlotRequest,
+    factors: &[String],
+    seed: u64,
+) -> Result<(Design, RowModel), Error> {
+    let given = factors_of(factors)?;
+    let factors: Vec<Factor> = given.iter().map(|given| given.factor.clone()).collect();
+    let named = |hard: &String| {
+        let place = factors.iter().position(|own| own.name == hard.trim());
+        place.ok_or_else(|| {
+            let names: Vec<&str> = factors.iter().map(|own| own.name.as_str()).collect();
+            let problem = format!("this is none of the factors {}", names.join(", "));
+            unusable(format!("--hard '{hard}'"), problem)
+        })
+    };
+    let hard: Result<Vec<usize>, Error> = request.hard.iter().map(named).collect();
+    let model = row_model(&request.model, &factors)?;
+    let row = |coded: &[f64]| row_at(&model, &factors, coded);
+    let options = SplitPlotOptions {
+        hard: hard?,
+        whole_plots: request.whole_plots,
+        runs: request.runs,
+        ratio: request.ratio,
+        criterion: request.criterion,
+        starts: request.starts,
+        seed,
+    };
+    let design = with_levels(&model, &given, request.points, |levels| {
+        split_plot(factors.clone(), &row, levels, &options)
+    })?;
+    Ok((design, model))
+}
+
+/// A design on as few levels of each range as tell the terms of its model apart.
+fn with_levels(
+    model: &RowModel,
+    given: &[DesignFactor],
+    points: Option<usize>,
+    make: impl Fn(&[Vec<f64>]) -> Result<Design, DesignError>,
+) -> Result<Design, Error> {
+    let mut counts = level_counts(model, points)?;
+    loop {
+        let count = counts.remove(0);
+        // More levels may tell more terms apart.
+        match make(&levels_of(given, count)) {
+            Err(DesignError::ModelSingular { .. }) if !counts.is_empty() => {}
+            made => break made.map_err(impossible),
+        }
+    }
+}
+
+/// The error of a design that cannot be.
+pub fn impossible(error: DesignError) -> Error {
+    unusable("windfall design", error.to_string())
 }
 
 fn table_of(path: Option<&Path>) -> Result<Option<(&Path, Data)>, Error> {

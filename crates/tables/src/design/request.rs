@@ -1,5 +1,7 @@
 //! What `windfall design` is asked: texts of the command line.
 
+#[cfg(feature = "clap")]
+use crate::option_words::optimality;
 use std::path::PathBuf;
 pub use windfall_design::exchange::Criterion;
 
@@ -50,6 +52,8 @@ pub enum DesignKind {
     Sobol(SpaceRequest),
     /// The best for a model, by some criterion.
     Optimal(Criterion, OptimalRequest),
+    /// With factors that are set for whole plots of runs.
+    SplitPlot(SplitPlotRequest),
 }
 
 /// What is asked of a factorial design.
@@ -161,6 +165,48 @@ pub struct OptimalRequest {
     /// Runs already made, which are kept; a column for each factor
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", value_hint = clap::ValueHint::FilePath))]
     pub augment: Option<PathBuf>,
+    /// Random starts; as many as take seconds if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub starts: Option<usize>,
+}
+
+/// What is asked of a split-plot design.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct SplitPlotRequest {
+    /// A factor that is hard to change, set once for each whole plot; may be repeated
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", required = true))]
+    pub hard: Vec<String>,
+    /// Whole plots: how often the hard-to-change factors are set
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub whole_plots: usize,
+    /// Runs of all whole plots
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub runs: usize,
+    /// linear, 2fi, quadratic, or a formula in names or letters; factors stand for their coded
+    /// values
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, default_value = "quadratic", value_name = "MODEL")
+    )]
+    pub model: String,
+    /// Expected variance between whole plots over that within
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            long,
+            default_value_t = 1.0,
+            allow_hyphen_values = true,
+            value_name = "RATIO"
+        )
+    )]
+    pub ratio: f64,
+    /// What is made good: the coefficients (d), or the predictions (i)
+    #[cfg_attr(feature = "clap", arg(long, default_value = "d", value_name = "CRITERION", value_parser = optimality()))]
+    pub criterion: Criterion,
+    /// Levels of each range to choose from; what the model needs if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub points: Option<usize>,
     /// Random starts; as many as take seconds if left out
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub starts: Option<usize>,

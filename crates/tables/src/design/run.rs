@@ -1,13 +1,12 @@
 //! `windfall design`: from texts to a design, what it can tell, and its file.
 
-use crate::design::factor::{DesignFactor, parse_factor};
+use crate::design::factor::{DesignFactor, factors_of};
 use crate::design::model_row::{RowModel, row_at, terms_of};
-use crate::design::optimal_runs::optimal_design;
+use crate::design::optimal_runs::{impossible, optimal_design, split_plot_design};
 use crate::design::request::{DesignKind, DesignRequest, Order};
 use windfall_design::box_behnken::{BoxBehnkenOptions, box_behnken};
 use windfall_design::catalogue::catalogued;
 use windfall_design::composite::{Alpha, CompositeOptions, Ends, central_composite};
-use windfall_design::error::DesignError;
 use windfall_design::factorial::{FactorialOptions, full_factorial, two_level};
 use windfall_design::finding::DesignFinding;
 use windfall_design::kind::{Design, Factor, Point, Run, evenly, randomised};
@@ -16,6 +15,7 @@ use windfall_design::model::{DesignModel, extreme_points, region_points};
 use windfall_design::plackett_burman::plackett_burman;
 use windfall_design::quality::{DesignQuality, design_quality};
 use windfall_design::sobol::sobol;
+use windfall_design::split_plot::decorrelated;
 use windfall_design::word::{Generator, parse_generator};
 use windfall_files::error::Error;
 use windfall_files::option_value::{chosen, unusable};
@@ -46,7 +46,22 @@ pub struct DesignOutcome {
 /// # Errors
 /// A text that cannot be used, a design that cannot be.
 pub fn make_design(kind: &DesignKind, request: &DesignRequest) -> Result<DesignOutcome, Error> {
+    let mut ratio = 0.0;
     let (mut design, asked, about) = match kind {
+        DesignKind::SplitPlot(own) => {
+            let (design, model) = split_plot_design(own, &request.factors, request.seed)?;
+            ratio = own.ratio;
+            let about = vec![
+                format!("model {}", own.model),
+                format!(
+                    "whole plots {} - hard to change {} - ratio of variances {ratio}",
+                    own.whole_plots,
+                    own.hard.join(" - ")
+                ),
+                format!("search of seed {}", request.seed),
+            ];
+            (design, Some((own.model.clone(), model)), about)
+        }
         DesignKind::Optimal(criterion, optimal) => {
             let optimal_for = (optimal, *criterion);
             let (design, model) = optimal_design(optimal_for, &request.factors, request.seed)?;
@@ -73,7 +88,7 @@ pub fn make_design(kind: &DesignKind, request: &DesignRequest) -> Result<DesignO
     }
     let (model, terms, quality) = match asked {
         Some((name, model)) => {
-            let quality = quality_of(&design, &model);
+            let quality = quality_of(&design, &model, ratio);
             (name, names_of(&design, &model), quality)
         }
         None => largest_model(&design),
@@ -85,16 +100,6 @@ pub fn make_design(kind: &DesignKind, request: &DesignRequest) -> Result<DesignO
         quality,
         about,
     })
-}
-
-/// Factors of the command line.
-pub fn factors_of(texts: &[String]) -> Result<Vec<DesignFactor>, Error> {
-    texts.iter().map(|text| parse_factor(text)).collect()
-}
-
-/// The error of a design that cannot be.
-pub fn impossible(error: DesignError) -> Error {
-    unusable("windfall design", error.to_string())
 }
 
 fn design_of_kind(kind: &DesignKind, given: Vec<DesignFactor>, seed: u64) -> Result<Design, Error> {
@@ -144,8 +149,8 @@ fn design_of_kind(kind: &DesignKind, given: Vec<DesignFactor>, seed: u64) -> Res
         }
         DesignKind::LatinHypercube(asked) => latin_hypercube(factors, asked.runs, seed),
         DesignKind::Sobol(asked) => sobol(factors, asked.runs),
-        DesignKind::Optimal(..) => {
-            let problem = "an optimal design is made by exchange";
+        DesignKind::Optimal(..) | DesignKind::SplitPlot(_) => {
+            let problem = "this design is made by exchange";
             return Err(unusable("windfall design", problem));
         }
     };
@@ -307,7 +312,7 @@ fn largest_model(design: &Design) -> (String, Vec<String>, Option<DesignQuality>
         DesignModel::Linear,
     ];
     let found = models.into_iter().find_map(|model| {
-        let quality = quality_of(design, &RowModel::Named(model))?;
+        let quality = quality_of(design, &RowModel::Named(model), 0.0)?;
         Some((model, quality))
     });
     match found {
@@ -320,7 +325,9 @@ fn largest_model(design: &Design) -> (String, Vec<String>, Option<DesignQuality>
 }
 
 /// Figures for a model with block effects; existing runs count as one block with new ones.
-fn quality_of(design: &Design, model: &RowModel) -> Option<DesignQuality> {
+///
+/// * `ratio`: variance between whole plots over that of a run within, which is the unit
+fn quality_of(design: &Design, model: &RowModel, ratio: f64) -> Option<DesignQuality> {
     let blocks = block_effects(design);
     let terms = terms_of(model, &design.factors).len() + blocks;
     if terms > MOST_TERMS || design.runs.len() < terms || design.runs.len() * terms > MOST_NUMBERS {
@@ -338,6 +345,7 @@ fn quality_of(design: &Design, model: &RowModel) -> Option<DesignQuality> {
         row
     };
     let rows: Vec<Vec<f64>> = design.runs.iter().map(in_block).collect();
+    let rows = decorrelated(&rows, design, ratio);
     // Extreme points have no weight in the mean, but may be the largest.
     let extreme = extreme_points(&design.factors)
         .into_iter()

@@ -39,6 +39,12 @@ pub fn text_of_design(outcome: &DesignOutcome) -> String {
         let left = design.runs.len() - MOST_ROWS;
         text += &format!("… and {left} more; --out FILE.csv writes all\n");
     }
+    if design.whole_plots().is_some() {
+        let reset = "Set the hard-to-change factors anew at the beginning of each whole plot, also \
+                     where their settings stay: two plots that share a setting share its error. σ is that of a run \
+                     within its whole plot.";
+        text += &format!("\n{}\n", paragraph(reset, 0));
+    }
     text += &format!("\n{}", properties(outcome));
     if let Some(fraction) = generated(design) {
         text += &format!("\n{}", fraction_text(fraction));
@@ -87,6 +93,7 @@ fn run_table(design: &Design) -> String {
     let blocks = design.blocks() > 1;
     let mut header = strings(&["run", "std"]);
     header.extend(blocks.then(|| "block".to_owned()));
+    header.extend(design.whole_plots().map(|_| "whole plot".to_owned()));
     header.push("point".to_owned());
     header.extend(design.factors.iter().map(|factor| factor.name.clone()));
     let numbers = || {
@@ -105,6 +112,7 @@ fn run_table(design: &Design) -> String {
         .map(|(index, run)| {
             let mut row = vec![(index + 1).to_string(), run.standard_order.to_string()];
             row.extend(blocks.then(|| run.block.to_string()));
+            row.extend(run.whole_plot.map(|plot| plot.to_string()));
             row.push(run.point.name().to_owned());
             let settings = design.factors.iter().zip(&run.coded);
             row.extend(settings.map(|(factor, coded)| shown(factor, *coded)));
@@ -112,7 +120,7 @@ fn run_table(design: &Design) -> String {
             row
         })
         .collect();
-    let point = 2 + usize::from(blocks);
+    let point = 2 + usize::from(blocks) + usize::from(design.whole_plots().is_some());
     page_tables(&header, &rows, &[point])
 }
 

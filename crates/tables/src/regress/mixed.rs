@@ -355,7 +355,10 @@ fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
 }
 
 /// Variances with profile intervals.
-fn variances(fit: &MixedFit, profiles: &Profiles) -> (Vec<VarianceOutcome>, Vec<FindingOutcome>) {
+pub(crate) fn variances(
+    fit: &MixedFit,
+    profiles: &Profiles,
+) -> (Vec<VarianceOutcome>, Vec<FindingOutcome>) {
     let shown = profiles.intervals.iter().map(|interval| {
         let (group, kind, of, value) = match &interval.parameter {
             VarianceParameter::Sd { term, column } => {

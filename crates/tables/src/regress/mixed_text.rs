@@ -23,7 +23,7 @@ const TERMS: [Column<Coefficient>; 8] = [
     ("to", |term| number(term.high)),
 ];
 
-const TESTS: [Column<MixedTest>; 5] = [
+pub(crate) const TESTS: [Column<MixedTest>; 5] = [
     ("term", |row| row.test.term.clone()),
     ("F", |row| number(row.test.f)),
     ("df", |row| freedom(row.test.df)),
@@ -31,7 +31,7 @@ const TESTS: [Column<MixedTest>; 5] = [
     ("p", |row| probability(row.test.p)),
 ];
 
-const VARIANCES: [Column<VarianceOutcome>; 6] = [
+pub(crate) const VARIANCES: [Column<VarianceOutcome>; 6] = [
     ("between", |row| row.group.clone()),
     ("", |row| row.kind.to_owned()),
     ("of", |row| row.of.clone()),

@@ -4,7 +4,7 @@ mod figures;
 pub mod findings;
 pub mod means;
 pub mod mixed;
-mod mixed_figures;
+pub(crate) mod mixed_figures;
 pub mod mixed_outcome;
 pub mod mixed_text;
 pub mod outcome;

@@ -104,6 +104,17 @@ pub enum AnyRegressOutcome {
     Mixed(Box<MixedOutcome>),
 }
 
+/// What a random part adds to a formula.
+///
+/// * `columns`: of the table; the name of one is taken as it is
+pub(crate) fn random_text(random: &str, columns: &[String]) -> String {
+    match random.contains('|') {
+        true => format!(" + ({random})"),
+        false if columns.iter().any(|own| own == random) => format!(" + (1 | `{random}`)"),
+        false => format!(" + (1 | {random})"),
+    }
+}
+
 /// Fits a linear model to a table, with random effects where there are any.
 ///
 /// # Errors
@@ -115,11 +126,7 @@ pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
     let mut text = request.formula(&names);
     for random in &request.random {
-        text += &match random.contains('|') {
-            true => format!(" + ({random})"),
-            false if names.contains(random) => format!(" + (1 | `{random}`)"),
-            false => format!(" + (1 | {random})"),
-        };
+        text += &random_text(random, &names);
     }
     let formula = formula(&text, &names).map_err(Error::Statistics)?;
     if formula.response.is_none() {

@@ -47,7 +47,8 @@ pub struct Effects {
     pub critical_of_all: f64,
 }
 
-/// Effects of a fitted model; `None` where nothing is left to estimate the noise.
+/// Effects of a fitted model; `None` where nothing is left to estimate the noise, and with random
+/// groups, where terms have degrees of freedom of their own and so no common limit.
 ///
 /// * `confidence`: level of the limits, such as 0.95
 ///
@@ -64,7 +65,7 @@ pub fn effects_of(model: &SurfaceModel, confidence: f64) -> Option<Effects> {
         })
     });
     let mut terms: Vec<TermEffect> = terms.collect();
-    if terms.is_empty() || model.residual.df < 1.0 {
+    if terms.is_empty() || model.random.is_some() || model.residual.df < 1.0 {
         return None;
     }
     terms.sort_by(|a, b| b.t.abs().total_cmp(&a.t.abs()));

@@ -111,7 +111,8 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
     })
 }
 
-/// Fitted against measured, residuals and influence of the runs, for each response.
+/// Fitted against measured, residuals and influence of the runs, for each response without random
+/// groups.
 pub fn paintings_of_models(
     outcome: &SurfaceOutcome,
     confidence: f64,
@@ -129,5 +130,9 @@ pub fn paintings_of_models(
         let name = format!("model-{}", model.response);
         diagnostics_painting(&name, &own, Arrangement::Surface, Vec::new())
     };
-    outcome.responses.iter().map(painting).collect()
+    let models = outcome.responses.iter();
+    models
+        .filter(|model| model.random.is_none())
+        .map(painting)
+        .collect()
 }

@@ -27,6 +27,8 @@ pub struct FittedSurfaces {
     pub reference: Vec<f64>,
     /// Whether `reference` is the optimum.
     pub at_optimum: bool,
+    /// Lines of the runs in the file.
+    pub lines: Vec<usize>,
 }
 
 /// Desirability of all responses at coded settings; `None` where nothing is wanted.
@@ -164,6 +166,7 @@ mod tests {
                 goal: None,
             }],
             at_optimum: false,
+            lines: Vec::new(),
         }
     }
 

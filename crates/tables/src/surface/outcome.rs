@@ -1,5 +1,6 @@
 //! Fitted response surfaces as JSON shows them.
 
+use crate::regress::mixed_outcome::VarianceOutcome;
 use crate::regress::outcome::RowOutcome;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
@@ -27,7 +28,10 @@ pub struct SurfaceTerm {
     pub ss: Option<f64>,
     /// Degrees of freedom.
     pub df: Option<f64>,
-    /// Mean square over that of the residuals.
+    /// Degrees of freedom of the denominator of F: those of the residuals, or those of Kenward and
+    /// Roger where groups are random.
+    pub df_denominator: Option<f64>,
+    /// Mean square over that of the residuals; with random groups Kenward and Roger's F.
     pub f: Option<f64>,
     /// Probability of F or more without the term.
     pub p: Option<f64>,
@@ -114,6 +118,25 @@ pub struct BlockEffect {
     pub effect: f64,
 }
 
+/// Random groups of runs: days, operators, whole plots.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct RandomOutcome {
+    /// Groups of each random term.
+    pub groups: Vec<(String, usize)>,
+    /// How variances and coefficients are estimated: "REML".
+    pub method: &'static str,
+    /// How errors and degrees of freedom are found: "Kenward-Roger".
+    pub df_method: &'static str,
+    /// Degrees of freedom of the denominator of the test of the model.
+    pub model_df_denominator: f64,
+    /// Standard deviations between the groups and of the residuals.
+    pub variances: Vec<VarianceOutcome>,
+    /// Part of the variance that surface and groups describe.
+    pub r2_conditional: f64,
+    /// Share of each random term in what the surface leaves.
+    pub intraclass: Vec<f64>,
+}
+
 /// The surface of one response.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SurfaceModel {
@@ -125,6 +148,9 @@ pub struct SurfaceModel {
     pub actual_terms: Vec<ActualTerm>,
     /// What blocks take up, where runs were made in blocks; R² and the model are of what is left.
     pub blocks: Option<BlockOutcome>,
+    /// Random groups of runs, where there are any; there are no sums of squares of terms, model
+    /// and residuals then, no lack of fit and no influence of runs.
+    pub random: Option<RandomOutcome>,
     /// The model against none.
     pub model: WholeModel,
     /// Residuals.

@@ -39,6 +39,11 @@ pub struct SurfaceRequest {
     /// this is left out; "none" for none
     #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN"))]
     pub block: Option<String>,
+    /// Groups of runs whose means vary at random: 'day', 'day/whole_plot' (whole plots within
+    /// days); "whole_plot" where there is such a column and this is left out; "none" for none; may
+    /// be repeated
+    #[cfg_attr(feature = "clap", arg(long, value_name = "GROUPS"))]
+    pub random: Vec<String>,
     /// Type of the analysis of variance, in coded units: 1 in order, 2 after all that do not
     /// contain the term (AB and A^2 contain A), 3 after all others
     #[cfg_attr(feature = "clap", arg(long, default_value = "3", value_name = "TYPE", value_parser = anova_type()))]
@@ -85,6 +90,7 @@ impl SurfaceRequest {
             factors: Vec::new(),
             ranges: Vec::new(),
             block: None,
+            random: Vec::new(),
             anova: AnovaType::Partial,
             confidence: 0.95,
             goals: Vec::new(),

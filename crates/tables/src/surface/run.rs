@@ -1,12 +1,9 @@
 //! `windfall surface`: a table of runs → response surfaces and the best settings.
 
 use crate::design::coding::number_factors;
-use crate::regress::findings::{
-    aliased_findings, finding, fit_findings, lack_finding, left_out_finding,
-};
-use crate::regress::outcome::rows_of;
+use crate::regress::findings::left_out_finding;
 use crate::regress::run::check_part;
-use crate::surface::blocks::{block_column, block_outcome, blocks_finding, blocks_of};
+use crate::surface::blocks::{block_column, blocks_finding, blocks_of};
 use crate::surface::factors::{coded_factors, coding_findings, coding_text};
 use crate::surface::figure_contour::contour_paintings;
 use crate::surface::figure_effects::effects_painting;
@@ -16,9 +13,10 @@ use crate::surface::figure_lines::{
 use crate::surface::figure_view::view_paintings;
 use crate::surface::fitted::{FittedSurfaces, ResponseSurface};
 use crate::surface::goal::goal;
-use crate::surface::outcome::{
-    ActualTerm, CanonicalOutcome, FactorOutcome, RidgeOutcome, SurfaceModel, SurfaceOutcome,
-    SurfaceTerm,
+use crate::surface::model_outcome::{Modelled, model_of};
+use crate::surface::outcome::{FactorOutcome, SurfaceOutcome};
+use crate::surface::random::{
+    group_columns, random_finding, random_paintings, random_parts, terms_of_parts,
 };
 use crate::surface::request::SurfaceRequest;
 use crate::surface::settings::{SettingsRequest, grid_of, settings};
@@ -28,19 +26,13 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_files::write_file::check_outputs;
-use windfall_statistics::model::anova::{Anova, anova_within};
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
 use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
-use windfall_statistics::residuals::diagnostics::{inflation, influence};
-use windfall_statistics::surface::analysis::{
-    Shape, Surface, canonical, fit_surface_in_blocks, ridge, surface_lack_of_fit,
-};
+use windfall_statistics::surface::analysis::fit_surface_in_blocks;
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::desirability::Goal;
-use windfall_statistics::surface::terms::{
-    contains, is_hierarchical, letter, monomial_name, surface_terms,
-};
+use windfall_statistics::surface::terms::{letter, surface_terms};
 
 /// Fits response surfaces, and draws them where figures are asked for.
 ///
@@ -67,13 +59,20 @@ pub fn fitted_surfaces(
     check_part("--confidence", request.confidence)?;
     let mut data = request.reading.read(&request.table)?;
     let factors = factor_names(request, &data)?;
-    let block = block_column(request, &factors, &data)?;
-    let mut findings = keep_complete(request, (&factors, block.as_ref()), &mut data)?;
+    let random = random_parts(request, &factors, &data)?;
+    let grouped = group_columns(random.as_ref());
+    let block = block_column(request, &factors, &data)?.filter(|own| !grouped.contains(own));
+    let used = factors.iter().chain(&block).chain(&grouped);
+    let mut findings = keep_complete(request, used.cloned().collect(), &mut data)?;
     let blocks = block
         .as_ref()
         .map(|name| blocks_of(name, &data))
         .transpose()?;
     findings.extend(block.as_ref().zip(blocks.as_ref()).map(blocks_finding));
+    let random = random
+        .map(|parts| terms_of_parts(&parts, &data))
+        .transpose()?;
+    findings.extend(random.as_deref().map(random_finding));
     let coded = coded_factors(&data, &factors, &request.ranges)?;
     findings.extend(data.left_out_finding());
     findings.extend(coding_findings(&coded));
@@ -83,15 +82,23 @@ pub fn fitted_surfaces(
     for (response, model) in modelled {
         let y = response_values(response, &data)?;
         let terms = surface_terms(model, &factors).map_err(Error::Statistics)?;
-        let fitted = fit_surface_in_blocks(
-            &coded.factors,
-            &terms,
-            (&coded.values, blocks.as_ref()),
-            &y,
-            request.confidence,
-        )
-        .map_err(|error| data.told(error))?;
-        let (outcome, found) = model_of(request, response, &fitted, &coded, &y, &data);
+        let told = |error| data.told(error);
+        let runs = (&coded.values[..], blocks.as_ref());
+        let mut fitted =
+            fit_surface_in_blocks(&coded.factors, &terms, runs, &y, request.confidence)
+                .map_err(told)?;
+        if let Some(groups) = &random {
+            fitted = fitted.in_random_groups(&y, groups.clone()).map_err(told)?;
+        }
+        let (outcome, found) = model_of(&Modelled {
+            response,
+            surface: &fitted,
+            coded: &coded,
+            y: &y,
+            data: &data,
+            anova: request.anova,
+            confidence: request.confidence,
+        })?;
         findings.extend(found);
         models.push(outcome);
         surfaces.push(fitted);
@@ -138,6 +145,7 @@ pub fn fitted_surfaces(
         coded,
         reference,
         at_optimum,
+        lines: data.lines,
     };
     Ok((outcome, fitted))
 }
@@ -150,8 +158,14 @@ fn draw(
 ) -> Result<(), Error> {
     let mut paintings = contour_paintings(fitted, outcome)?;
     paintings.extend(view_paintings(fitted, outcome)?);
-    for model in &outcome.responses {
+    for (model, response) in outcome.responses.iter().zip(&fitted.responses) {
         paintings.extend(effects_painting(model, confidence)?);
+        paintings.extend(random_paintings(
+            response,
+            model,
+            &fitted.lines,
+            confidence,
+        )?);
     }
     paintings.extend(paintings_of_models(outcome, confidence)?);
     write_paintings(folder, &paintings)?;
@@ -185,13 +199,13 @@ fn factor_names(request: &SurfaceRequest, data: &Data) -> Result<Vec<String>, Er
 }
 
 /// Leaves out runs with missing cells, and says so.
+///
+/// * `names`: columns that are used beside the responses
 fn keep_complete(
     request: &SurfaceRequest,
-    (factors, block): (&[String], Option<&String>),
+    mut names: Vec<String>,
     data: &mut Data,
 ) -> Result<Vec<FindingOutcome>, Error> {
-    let mut names = factors.to_vec();
-    names.extend(block.cloned());
     for response in &request.responses {
         if has_column(data, response) {
             names.push(response.clone());
@@ -261,156 +275,6 @@ fn factor_outcomes(
                 lowest: values.iter().copied().fold(f64::INFINITY, f64::min),
                 highest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             })
-        })
-        .collect()
-}
-
-fn model_of(
-    request: &SurfaceRequest,
-    response: &str,
-    surface: &Surface,
-    coded: &CodedFactors,
-    y: &[f64],
-    data: &Data,
-) -> (SurfaceModel, Vec<FindingOutcome>) {
-    let fit = &surface.fit;
-    let every: Vec<usize> = (0..surface.terms.monomials.len()).collect();
-    let whole = (&surface.frame, &surface.reduced);
-    let monomials = &surface.terms.monomials;
-    let variance = anova_within(
-        whole,
-        &surface.block_columns(),
-        &every,
-        request.anova,
-        &|outer, inner| contains(&monomials[outer], &monomials[inner]),
-    );
-    let influence = influence(fit, y);
-    let vif = inflation(&surface.frame, fit);
-    let mean = y.iter().sum::<f64>() / y.len() as f64;
-    let quality = fit.quality(y);
-    let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
-    let mut findings = aliased_findings(&surface.frame, &fit.aliased);
-    findings.extend(fit_findings(fit, &influence, &vif, &data.lines, &[]));
-    let lack_of_fit = surface_lack_of_fit(surface, &coded.values, y);
-    findings.extend(lack_finding(lack_of_fit.as_ref()));
-    if !is_hierarchical(&surface.terms.monomials) {
-        findings.push(finding(
-            "not-hierarchical",
-            "the model has a term without the terms that it is made of: what it says depends on \
-             the coding, and the equation in actual units has terms beside the model's"
-                .to_owned(),
-        ));
-    }
-    findings.iter_mut().for_each(|finding| {
-        finding.message = format!("{response}: {}", finding.message);
-    });
-    let outcome = SurfaceModel {
-        response: response.to_owned(),
-        terms: terms_of(surface, &variance, &vif),
-        actual_terms: surface
-            .actual
-            .iter()
-            .map(|(powers, coefficient)| ActualTerm {
-                name: monomial_name(powers, &names, false),
-                coefficient: *coefficient,
-            })
-            .collect(),
-        blocks: block_outcome(surface),
-        model: fit.whole(),
-        residual: fit.residual(),
-        total: fit.total(),
-        cv_percent: 100.0 * quality.sigma / mean,
-        quality,
-        anova_type: request.anova.roman(),
-        lack_of_fit,
-        canonical: canonical_of(surface, coded),
-        ridge: ridge_of(surface, coded),
-        influence: rows_of(influence, &data.lines),
-    };
-    (outcome, findings)
-}
-
-fn terms_of(
-    surface: &Surface,
-    variance: &Anova,
-    vif: &[windfall_statistics::residuals::diagnostics::Inflation],
-) -> Vec<SurfaceTerm> {
-    let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
-    let none = vec![0; names.len()];
-    let monomials = std::iter::once(&none).chain(&surface.terms.monomials);
-    monomials
-        .enumerate()
-        .map(|(column, monomial)| {
-            let place = surface.fit.columns.iter().position(|own| *own == column);
-            let own = place.map(|place| &surface.fit.coefficients[place]);
-            let row = column.checked_sub(1).map(|term| &variance.rows[term]);
-            let term = &surface.frame.names[column];
-            let actual = surface.actual.iter().find(|(powers, _)| powers == monomial);
-            SurfaceTerm {
-                term: term.clone(),
-                name: monomial_name(monomial, &names, false),
-                coded: own.map_or(f64::NAN, |c| c.estimate),
-                se: own.map_or(f64::NAN, |c| c.se),
-                low: own.map_or(f64::NAN, |c| c.low),
-                high: own.map_or(f64::NAN, |c| c.high),
-                actual: actual.map_or(f64::NAN, |(_, value)| *value),
-                ss: row.map(|row| row.ss),
-                df: row.map(|row| row.df),
-                f: row.map(|row| row.f),
-                p: row.map(|row| row.p),
-                vif: vif.iter().find(|v| v.term == *term).map(|v| v.factor),
-            }
-        })
-        .collect()
-}
-
-fn canonical_of(surface: &Surface, coded: &CodedFactors) -> Option<CanonicalOutcome> {
-    let found = canonical(surface)?;
-    let inside = (0..coded.factors.len()).all(|factor| {
-        let (low, high) = coded.range(factor);
-        (low..=high).contains(&found.stationary[factor])
-    });
-    Some(CanonicalOutcome {
-        shape: match found.shape {
-            Shape::Maximum => "maximum",
-            Shape::Minimum => "minimum",
-            Shape::Saddle => "saddle",
-            Shape::Ridge => "ridge",
-        },
-        actual: coded.actual(&found.stationary),
-        coded: found.stationary,
-        distance: found.distance,
-        inside,
-        value: found.value,
-        eigenvalues: found.eigenvalues,
-        directions: found.directions,
-    })
-}
-
-/// Steps from the centre to the farthest run.
-const RIDGE_STEPS: usize = 5;
-
-fn ridge_of(surface: &Surface, coded: &CodedFactors) -> Vec<RidgeOutcome> {
-    let runs = 0..coded.values[0].len();
-    let distance = |run: usize| {
-        let parts = coded.values.iter().map(|factor| factor[run].powi(2));
-        parts.sum::<f64>().sqrt()
-    };
-    let farthest = runs.map(distance).fold(0.0, f64::max);
-    let radii: Vec<f64> = (0..=RIDGE_STEPS)
-        .map(|step| farthest * step as f64 / RIDGE_STEPS as f64)
-        .collect();
-    [("maximum", true), ("minimum", false)]
-        .into_iter()
-        .flat_map(|(of, maximum)| {
-            let points = ridge(surface, &radii, maximum).into_iter();
-            points.map(move |point| (of, point))
-        })
-        .map(|(of, point)| RidgeOutcome {
-            of,
-            radius: point.radius,
-            actual: coded.actual(&point.point),
-            value: point.value,
         })
         .collect()
 }

@@ -1,8 +1,10 @@
 //! Response surfaces as text and CSV.
 
+use crate::regress::mixed_outcome::MixedTest;
+use crate::regress::mixed_text::{TESTS, VARIANCES};
 use crate::regress::text::{anova_text, lack_of_fit_text, r2_text};
 use crate::surface::outcome::{
-    FactorOutcome, SettingOutcome, SurfaceModel, SurfaceOutcome, SurfaceTerm,
+    FactorOutcome, RandomOutcome, SettingOutcome, SurfaceModel, SurfaceOutcome, SurfaceTerm,
 };
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
@@ -58,6 +60,9 @@ pub fn text_of_surface(outcome: &SurfaceOutcome) -> String {
 }
 
 fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
+    if let Some(random) = &model.random {
+        return random_text(outcome, model, random);
+    }
     let quality = &model.quality;
     let own = model.terms.iter().filter_map(|term| {
         Some(AnovaRow {
@@ -91,6 +96,52 @@ fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
         number(model.cv_percent),
         number(quality.adequate_precision),
         lack_of_fit_text(lack_of_fit, "no run is repeated"),
+        canonical_text(outcome, model)
+    )
+}
+
+/// A model with random groups: tests with their own degrees of freedom in place of sums of squares.
+fn random_text(outcome: &SurfaceOutcome, model: &SurfaceModel, random: &RandomOutcome) -> String {
+    let groups = random.groups.iter();
+    let groups: Vec<String> = groups
+        .map(|(name, count)| format!("{count} of {name}"))
+        .collect();
+    let whole = MixedTest {
+        test: model.model.row(),
+        df_denominator: random.model_df_denominator,
+    };
+    let own = model.terms.iter().filter_map(|term| {
+        Some(MixedTest {
+            test: AnovaRow {
+                term: term.term.clone(),
+                ss: f64::NAN,
+                df: term.df?,
+                f: term.f?,
+                p: term.p?,
+            },
+            df_denominator: term.df_denominator?,
+        })
+    });
+    let tests: Vec<MixedTest> = std::iter::once(whole).chain(own).collect();
+    let quality = &model.quality;
+    format!(
+        "\n{}; groups: {}; {}\n{}\n{}\nTests of the terms in coded units, each after all others \
+         ({}):\n{}\n\nStandard deviations, with profile intervals of the same likelihood:\n{}\n\n\
+         R² of the surface {}, with the groups {}\nresidual standard deviation {} ({} % of the \
+         mean), adequate precision {}\n{}",
+        model.response,
+        groups.join(", "),
+        random.method,
+        text_of_rows(&model.terms, &TERMS, &[0, 1]),
+        blocks_text(model),
+        random.df_method,
+        text_of_rows(&tests, &TESTS, &[0]),
+        text_of_rows(&random.variances, &VARIANCES, &[0, 1, 2]),
+        plain(quality.r2),
+        plain(random.r2_conditional),
+        number(quality.sigma),
+        number(model.cv_percent),
+        number(quality.adequate_precision),
         canonical_text(outcome, model)
     )
 }
@@ -157,7 +208,17 @@ pub fn csv_of_surface(outcome: &SurfaceOutcome) -> Result<String, Error> {
         );
     }
     let header = strings(&[
-        "response", "term", "name", "coded", "se", "actual", "ss", "df", "f", "p",
+        "response",
+        "term",
+        "name",
+        "coded",
+        "se",
+        "actual",
+        "ss",
+        "df",
+        "f",
+        "p",
+        "df_denominator",
     ]);
     let rows = outcome.responses.iter().flat_map(|model| {
         model.terms.iter().map(|term| {
@@ -173,6 +234,7 @@ pub fn csv_of_surface(outcome: &SurfaceOutcome) -> Result<String, Error> {
                 given(term.df),
                 given(term.f),
                 given(term.p),
+                given(term.df_denominator),
             ]
         })
     });

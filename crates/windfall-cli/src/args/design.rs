@@ -5,7 +5,7 @@ use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 use windfall_tables::design::request::{
     BoxBehnkenRequest, CompositeRequest, DesignRequest, FactorialRequest, OptimalRequest,
-    PlackettBurmanRequest, SpaceRequest,
+    PlackettBurmanRequest, SpaceRequest, SplitPlotRequest,
 };
 
 /// `windfall design`
@@ -62,6 +62,17 @@ pub enum DesignCommand {
     /// Best for the predictions of a given model
     #[command(after_help = OPTIMAL)]
     IOptimal(KindArguments<OptimalRequest>),
+    /// Whole plots of runs for factors that are hard to change; best for a given model
+    #[command(
+        after_help = "Example, fruit taken from cold rooms of different temperatures and dropped from \
+several heights:
+  windfall design split-plot --factor 'T=2..20 degC' --factor 'h=10..40 cm' --factor 'm=120..240 g' \\
+      --hard T --whole-plots 8 --runs 32 --out design.csv
+
+The column whole_plot says which runs share a setting of the hard-to-change factors; \
+`windfall surface` estimates the scatter between whole plots from it."
+    )]
+    SplitPlot(KindArguments<SplitPlotRequest>),
 }
 
 /// What one kind of design takes.

@@ -19,6 +19,7 @@ pub fn run(arguments: &DesignArguments) -> anyhow::Result<()> {
         Command::BoxBehnken(own) => (&own.all, DesignKind::BoxBehnken(own.kind.clone())),
         Command::LatinHypercube(own) => (&own.all, DesignKind::LatinHypercube(own.kind.clone())),
         Command::Sobol(own) => (&own.all, DesignKind::Sobol(own.kind.clone())),
+        Command::SplitPlot(own) => (&own.all, DesignKind::SplitPlot(own.kind.clone())),
         Command::DOptimal(own) => {
             let kind = DesignKind::Optimal(Criterion::D, own.kind.clone());
             (&own.all, kind)

@@ -316,8 +316,12 @@ export type PredictionOutcome = Prediction & ({ line: number; original: Original
 export interface Problem { title: string; status: number; detail: string; code: string; }
 export interface ProfileOutcome { values: number[]; rises: number[]; open?: string | null; }
 export interface QualityOutcome {
-  r2: number; r2_adjusted: number; r2_predicted: number; press: number; adequate_precision: number; sigma: number;
-  log_likelihood: number; aic: number; aicc: number; bic: number;
+  r2: number; r2_adjusted: number | null; r2_predicted: number | null; press: number | null; adequate_precision: number;
+  sigma: number; log_likelihood: number; aic: number; aicc: number; bic: number;
+}
+export interface RandomOutcome {
+  groups: [string, number][]; method: string; df_method: string; model_df_denominator: number;
+  variances: VarianceOutcome[]; r2_conditional: number; intraclass: number[];
 }
 export interface RangeOutcome { value: number; low: number | null; high: number | null; }
 export interface RecordingEntry { file: string; bytes: number; impacts: string[]; }
@@ -386,16 +390,16 @@ export interface StepOutcome {
   term: string; action: string; f: number; p: number; criterion: number | null; r2: number;
 }
 export interface StoredResults { outcome: AnyOutcome | null; pending: number; time: string | null; }
-export interface SumOfSquares { ss: number; df: number; }
+export interface SumOfSquares { ss: number | null; df: number | null; }
 export type SurfaceAnswer = SurfaceOutcome & { maps: ResponseMap[]; command: string; };
 export interface SurfaceGiven {
   table: string; factors: string[]; responses: ResponseGiven[]; goals?: string[]; hold?: string[];
   along?: string | null; members?: number; grid?: string | null; grid_points?: number;
 }
 export type SurfaceModel = QualityOutcome & ({
-  response: string; terms: SurfaceTerm[]; actual_terms: ActualTerm[]; blocks: BlockOutcome | null; model: WholeModel;
-  residual: SumOfSquares; total: SumOfSquares; cv_percent: number; anova_type: string;
-  lack_of_fit: LackOfFitOutcome | null; canonical: CanonicalOutcome | null; ridge: RidgeOutcome[];
+  response: string; terms: SurfaceTerm[]; actual_terms: ActualTerm[]; blocks: BlockOutcome | null;
+  random: RandomOutcome | null; model: WholeModel; residual: SumOfSquares; total: SumOfSquares; cv_percent: number;
+  anova_type: string; lack_of_fit: LackOfFitOutcome | null; canonical: CanonicalOutcome | null; ridge: RidgeOutcome[];
   influence: RowOutcome[];
 });
 export type SurfaceOutcome = SurfaceModel & ({
@@ -404,7 +408,7 @@ export type SurfaceOutcome = SurfaceModel & ({
 });
 export interface SurfaceTerm {
   term: string; name: string; coded: number; se: number; low: number; high: number; actual: number; ss: number | null;
-  df: number | null; f: number | null; p: number | null; vif: number | null;
+  df: number | null; df_denominator: number | null; f: number | null; p: number | null; vif: number | null;
 }
 export interface TableView { columns: string[]; rows: string[][]; }
 export interface TargetOutcome {
@@ -446,7 +450,7 @@ export interface WaveformParameter {
   name: string; value: MeasuredValue; sd_of_noise: number; per_millimetre: MeasuredValue | null;
 }
 export interface WeakOutcome { sd: number; shares: Record<string, number>; }
-export interface WholeModel { ss: number; df: number; f: number; p: number; }
+export interface WholeModel { ss: number | null; df: number; f: number; p: number; }
 export interface WindowGiven { impact: string; from?: number | null; to?: number | null; }
 export type Work = "fit" | "laws" | "population" | "calibrate" | "report";
 export interface WrittenValue {
