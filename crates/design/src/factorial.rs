@@ -4,8 +4,8 @@ use crate::blocks::{block_of, block_words};
 use crate::error::DesignError;
 use crate::finding::DesignFinding;
 use crate::kind::{
-    Design, Factor, Point, add_centres, check_factors, check_numbers, check_runs, check_two_levels,
-    design_of, number_by_block,
+    Design, Factor, Point, add_centres, centres_of, check_centre, check_factors, check_runs,
+    check_two_levels, design_of, number_by_block,
 };
 use crate::word::{Fraction, Generator, MOST_LETTERS, fraction_of};
 
@@ -67,6 +67,7 @@ pub fn full_factorial(
     }
     check_size(
         levels.iter().map(|levels| levels.len() as f64).product(),
+        &factors,
         options,
     )?;
     let mut points = vec![Vec::new()];
@@ -102,7 +103,7 @@ pub fn two_level(
     check_factors("factorial", &factors, 1)?;
     check_two_levels("two-level factorial", &factors)?;
     let fraction = fraction_of(generators, factors.len())?;
-    check_size(fraction.runs(), options)?;
+    check_size(fraction.runs(), &factors, options)?;
     let points = two_level_points(&fraction);
     let (k, p) = (factors.len(), generators.len());
     let kind = match fraction.resolution() {
@@ -143,7 +144,11 @@ pub fn roman(resolution: usize) -> String {
     tens + units[resolution % 10]
 }
 
-fn check_size(points: f64, options: &FactorialOptions) -> Result<(), DesignError> {
+fn check_size(
+    points: f64,
+    factors: &[Factor],
+    options: &FactorialOptions,
+) -> Result<(), DesignError> {
     let blocks = options.blocks;
     if blocks == 0 || options.replicates == 0 {
         let what = "a factorial design, with one block and one replicate,".to_owned();
@@ -154,7 +159,11 @@ fn check_size(points: f64, options: &FactorialOptions) -> Result<(), DesignError
             what,
         });
     }
-    let centres = options.centre as f64 * blocks as f64;
+    let each = match options.centre {
+        0 => 0,
+        count => count * centres_of(factors).len(),
+    };
+    let centres = each as f64 * blocks as f64;
     check_runs(points * options.replicates as f64 + centres)
 }
 
@@ -167,7 +176,7 @@ fn lay_out(
     fraction: Option<&Fraction>,
 ) -> Result<Design, DesignError> {
     if options.centre > 0 {
-        check_numbers("factorial with centre points", &factors)?;
+        check_centre("factorial with centre points", &factors)?;
     }
     let words = match fraction {
         Some(fraction) if options.blocks > 1 => block_words(fraction, options.blocks, 1)?,

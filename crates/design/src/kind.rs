@@ -218,16 +218,39 @@ pub fn design_of(kind: String, factors: Vec<Factor>, points: Vec<(Point, Vec<f64
     }
 }
 
-/// Adds `count` centre points to a block, at the end of the standard order.
-pub fn add_centres(design: &mut Design, block: usize, count: usize) {
-    for _ in 0..count {
-        design.runs.push(Run {
-            standard_order: design.runs.len() + 1,
-            block,
-            whole_plot: None,
-            point: Point::Centre,
-            coded: vec![0.0; design.factors.len()],
+/// Centre points of factors: numbers at 0, categories in all combinations.
+pub fn centres_of(factors: &[Factor]) -> Vec<Vec<f64>> {
+    factors.iter().fold(vec![Vec::new()], |points, factor| {
+        let levels = match factor.categories.is_empty() {
+            true => vec![0.0],
+            false => factor.ends(),
+        };
+        let longer = points.iter().flat_map(|point| {
+            let point = point.clone();
+            levels
+                .iter()
+                .map(move |level| [&point[..], &[*level]].concat())
         });
+        longer.collect()
+    })
+}
+
+/// Adds `count` centre points to a block at each combination of categories, at the end of the
+/// standard order.
+pub fn add_centres(design: &mut Design, block: usize, count: usize) {
+    if count == 0 {
+        return;
+    }
+    for coded in centres_of(&design.factors) {
+        for _ in 0..count {
+            design.runs.push(Run {
+                standard_order: design.runs.len() + 1,
+                block,
+                whole_plot: None,
+                point: Point::Centre,
+                coded: coded.clone(),
+            });
+        }
     }
 }
 
@@ -302,6 +325,14 @@ pub fn check_numbers(kind: &'static str, factors: &[Factor]) -> Result<(), Desig
             kind,
         }),
         None => Ok(()),
+    }
+}
+
+/// Checks that there is a number among the factors, so that there is a centre.
+pub fn check_centre(kind: &'static str, factors: &[Factor]) -> Result<(), DesignError> {
+    match factors.iter().all(|factor| !factor.categories.is_empty()) {
+        true => check_numbers(kind, factors),
+        false => Ok(()),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::error::DesignError;
 use crate::finding::DesignFinding;
 use crate::kind::{
-    Design, Factor, Point, add_centres, check_factors, check_numbers, check_two_levels, design_of,
+    Design, Factor, Point, add_centres, check_centre, check_factors, check_two_levels, design_of,
 };
 
 /// Most runs.
@@ -33,7 +33,7 @@ pub fn plackett_burman(
     check_factors(kind, &factors, 1)?;
     check_two_levels(kind, &factors)?;
     if centre > 0 {
-        check_numbers("Plackett-Burman design with centre points", &factors)?;
+        check_centre("Plackett-Burman design with centre points", &factors)?;
     }
     let least = factors.len() + 1;
     let available =

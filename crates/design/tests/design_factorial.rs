@@ -5,8 +5,9 @@
 
 use proptest::prelude::*;
 use windfall_design::catalogue::{catalogued, sizes};
+use windfall_design::error::DesignError;
 use windfall_design::factorial::{FactorialOptions, two_level};
-use windfall_design::kind::{Design, Factor};
+use windfall_design::kind::{Design, Factor, Point};
 use windfall_design::plackett_burman::plackett_burman;
 use windfall_design::word::{Generator, Word, aliases, fraction_of};
 
@@ -129,4 +130,47 @@ proptest! {
             }
         }
     }
+}
+
+/// The centre of numbers is met at each combination of categories, in each block.
+#[test]
+fn closed_form_centres_of_every_category() {
+    let names = |names: &[&str]| -> Vec<String> { names.iter().map(|n| n.to_string()).collect() };
+    let factors = vec![
+        Factor::between("v", "m/s", 0.3, 0.6).unwrap(),
+        Factor::of_categories("variety", &names(&["Fuji", "Gala"])).unwrap(),
+        Factor::between("R", "mm", 25.0, 40.0).unwrap(),
+        Factor::of_categories("pad", &names(&["none", "foam"])).unwrap(),
+    ];
+    let options = FactorialOptions {
+        centre: 2,
+        blocks: 2,
+        ..Default::default()
+    };
+    let design = two_level(factors, &[], &options).unwrap();
+    assert_eq!(design.runs.len(), 16 + 2 * 2 * 4);
+    for block in [1, 2] {
+        for categories in [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]] {
+            let own = design.runs.iter().filter(|run| {
+                let same = [run.coded[1], run.coded[3]] == categories;
+                run.block == block && same && run.point == Point::Centre
+            });
+            let own: Vec<_> = own.collect();
+            assert_eq!(own.len(), 2);
+            assert!(
+                own.iter()
+                    .all(|run| (run.coded[0], run.coded[2]) == (0.0, 0.0))
+            );
+        }
+    }
+    let alone = vec![Factor::of_categories("pad", &names(&["none", "foam"])).unwrap()];
+    let error = two_level(
+        alone,
+        &[],
+        &FactorialOptions {
+            centre: 1,
+            ..Default::default()
+        },
+    );
+    assert!(matches!(error, Err(DesignError::Categories { .. })));
 }

@@ -72,7 +72,7 @@ pub struct FactorialRequest {
     /// Runs of every combination
     #[cfg_attr(feature = "clap", arg(long, default_value_t = 1, value_name = "N"))]
     pub replicates: usize,
-    /// Centre points in each block
+    /// Centre points in each block, at each combination of categories
     #[cfg_attr(feature = "clap", arg(long, default_value_t = 0, value_name = "N"))]
     pub centre: usize,
     /// Blocks of a two-level design: 2, 4, 8 …
@@ -87,7 +87,7 @@ pub struct PlackettBurmanRequest {
     /// Runs, a multiple of 4; the smallest number if left out
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub runs: Option<usize>,
-    /// Centre points
+    /// Centre points at each combination of categories
     #[cfg_attr(feature = "clap", arg(long, default_value_t = 0, value_name = "N"))]
     pub centre: usize,
 }
