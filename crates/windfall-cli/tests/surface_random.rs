@@ -235,6 +235,8 @@ fn whole_plots_of_a_design_are_read_from_its_column() {
         &[&asked[..], &["--random", "none", "--format", "json"]].concat(),
     ))
     .unwrap();
+    let codes = |own: &Value| own["findings"].to_string().contains("whole-plots-left-out");
+    assert!(codes(&plain) && !codes(&found));
     let se = |own: &Value| own["responses"][0]["terms"][1]["se"].as_f64().unwrap();
     assert!(
         se(&found) > 1.3 * se(&plain),

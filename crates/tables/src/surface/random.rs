@@ -91,6 +91,27 @@ fn plots(request: &SurfaceRequest, factors: &[String], data: &Data) -> Vec<Strin
     }
 }
 
+/// Says that whole plots are taken for single runs, where the groups leave them out.
+///
+/// * `grouped`: columns that name the groups
+pub(crate) fn plots_finding(
+    request: &SurfaceRequest,
+    factors: &[String],
+    grouped: &[String],
+    data: &Data,
+) -> Option<FindingOutcome> {
+    let plots = plots(request, factors, data);
+    let left = plots.first().filter(|own| !grouped.contains(own))?;
+    Some(finding(
+        "whole-plots-left-out",
+        format!(
+            "the column {left} says that runs were made in whole plots, and the model takes them \
+             for independent: factors that are set once for each plot look more certain than they \
+             are; add --random {left}, or day/{left} where plots are made on several days"
+        ),
+    ))
+}
+
 /// Columns that name the groups.
 pub(crate) fn group_columns(parts: Option<&Formula>) -> Vec<String> {
     let parts = parts.iter().flat_map(|own| &own.random);

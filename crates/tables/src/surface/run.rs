@@ -16,7 +16,7 @@ use crate::surface::goal::goal;
 use crate::surface::model_outcome::{Modelled, model_of};
 use crate::surface::outcome::{FactorOutcome, SurfaceOutcome};
 use crate::surface::random::{
-    group_columns, random_finding, random_paintings, random_parts, terms_of_parts,
+    group_columns, plots_finding, random_finding, random_paintings, random_parts, terms_of_parts,
 };
 use crate::surface::request::SurfaceRequest;
 use crate::surface::settings::{SettingsRequest, grid_of, settings};
@@ -61,6 +61,7 @@ pub fn fitted_surfaces(
     let factors = factor_names(request, &data)?;
     let random = random_parts(request, &factors, &data)?;
     let grouped = group_columns(random.as_ref());
+    let plots = plots_finding(request, &factors, &grouped, &data);
     let block = block_column(request, &factors, &data)?.filter(|own| !grouped.contains(own));
     let used = factors.iter().chain(&block).chain(&grouped);
     let mut findings = keep_complete(request, used.cloned().collect(), &mut data)?;
@@ -73,6 +74,7 @@ pub fn fitted_surfaces(
         .map(|parts| terms_of_parts(&parts, &data))
         .transpose()?;
     findings.extend(random.as_deref().map(random_finding));
+    findings.extend(plots);
     let coded = coded_factors(&data, &factors, &request.ranges)?;
     findings.extend(data.left_out_finding());
     findings.extend(coding_findings(&coded));
