@@ -14,7 +14,7 @@ use windfall_statistics::table::{Cells, Column, Table};
 fn table(columns: &[(&str, Vec<f64>)]) -> Table {
     let columns = columns.iter().map(|(name, values)| Column {
         name: (*name).to_owned(),
-        cells: Cells::Numbers(values.clone()),
+        cells: Cells::Numbers(values.clone().into()),
     });
     Table {
         columns: columns.collect(),

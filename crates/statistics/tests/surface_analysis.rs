@@ -143,7 +143,7 @@ fn rows() -> ModelRows {
     let wave = |i: usize, speed: f64| (i as f64 * speed).sin();
     let column = |name: &str, values: Vec<f64>| Column {
         name: name.to_owned(),
-        cells: Cells::Numbers(values),
+        cells: Cells::Numbers(values.into()),
     };
     let count = 40;
     let a: Vec<f64> = (0..count).map(|i| wave(i, 0.7)).collect();

@@ -72,7 +72,7 @@ pub struct GroupSummary {
 /// # Errors
 /// [`Error::UnknownColumn`]; [`Error::NotNumbers`] for the column of values.
 pub fn split_groups(table: &Table, by: &[&str], value: &str) -> Result<Groups, Error> {
-    let values = table.numbers(value)?;
+    let values = &*table.numbers(value)?.values();
     let columns: Vec<Categories> = by
         .iter()
         .map(|name| Ok(table.column(name)?.cells.categories()))
@@ -182,8 +182,14 @@ mod tests {
                     "variety",
                     text(&["red", "golden", "red", "", "red", "golden"]),
                 ),
-                column("V", Cells::Numbers(vec![0.3, 0.1, 0.3, 0.1, 0.1, 0.1])),
-                column("k", Cells::Numbers(vec![2.0, 5.0, 4.0, 7.0, f64::NAN, 5.5])),
+                column(
+                    "V",
+                    Cells::Numbers(vec![0.3, 0.1, 0.3, 0.1, 0.1, 0.1].into()),
+                ),
+                column(
+                    "k",
+                    Cells::Numbers(vec![2.0, 5.0, 4.0, 7.0, f64::NAN, 5.5].into()),
+                ),
             ],
         }
     }

@@ -300,7 +300,7 @@ fn codes(table: &Table, column: &str, levels: &[String]) -> Result<Vec<usize>, E
         Ok(Cells::Categories(categories)) => categories.codes[row]
             .map_or("", |code| &categories.levels[code])
             .to_owned(),
-        Ok(Cells::Numbers(numbers)) => numbers[row].to_string(),
+        Ok(Cells::Numbers(numbers)) => numbers.at(row).to_string(),
         Err(_) => String::new(),
     };
     let position = |row: usize| {

@@ -88,7 +88,7 @@ fn collect(node: &Node, found: &mut Vec<String>) {
 fn evaluate(node: &Node, table: &Table) -> Result<Vec<f64>, Error> {
     match &node.kind {
         Kind::Number(number) => Ok(vec![*number; table.rows()]),
-        Kind::Name(name) => Ok(table.numbers(name)?.to_vec()),
+        Kind::Name(name) => Ok(table.numbers(name)?.values().into_owned()),
         Kind::Negative(inner) => {
             let mut values = evaluate(inner, table)?;
             values.iter_mut().for_each(|value| *value = -*value);
@@ -171,7 +171,7 @@ mod tests {
         Table {
             columns: vec![Column {
                 name: "x".to_owned(),
-                cells: Cells::Numbers(vec![4.0, f64::NAN, -1.0]),
+                cells: Cells::Numbers(vec![4.0, f64::NAN, -1.0].into()),
             }],
         }
     }

@@ -126,7 +126,7 @@ pub fn chosen_rows<'a>(table: &'a Table, rows: &[usize]) -> Cow<'a, Table> {
     let mut chosen = table.clone();
     for column in &mut chosen.columns {
         match &mut column.cells {
-            Cells::Numbers(numbers) => *numbers = rows.iter().map(|row| numbers[*row]).collect(),
+            Cells::Numbers(numbers) => *numbers = rows.iter().map(|row| numbers.at(*row)).collect(),
             Cells::Categories(categories) => {
                 categories.codes = rows.iter().map(|row| categories.codes[*row]).collect();
             }
@@ -300,8 +300,14 @@ mod tests {
         };
         Table {
             columns: vec![
-                column("y", Cells::Numbers(vec![1.0, 2.0, 3.0, 5.0, 8.0, f64::NAN])),
-                column("x", Cells::Numbers(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0])),
+                column(
+                    "y",
+                    Cells::Numbers(vec![1.0, 2.0, 3.0, 5.0, 8.0, f64::NAN].into()),
+                ),
+                column(
+                    "x",
+                    Cells::Numbers(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0].into()),
+                ),
                 column("f", Cells::Categories(Categories::of_cells(&text))),
                 column("g", Cells::Categories(Categories::of_cells(&other))),
             ],

@@ -39,7 +39,7 @@ impl OriginalScale {
         let table = chosen_rows(table, kept);
         let transformed = values(response, &table).ok()?;
         let own = table.numbers(&scale.column).ok()?;
-        let leads_back = |(own, transformed): (&f64, &f64)| {
+        let leads_back = |(own, transformed): (f64, &f64)| {
             own.is_nan() || (scale.value(*transformed) - own).abs() <= 1e-6 * own.abs()
         };
         let mut rows = own.iter().zip(&transformed);
@@ -255,7 +255,7 @@ mod tests {
         let table = |cells: &[f64]| Table {
             columns: vec![Column {
                 name: "k".to_owned(),
-                cells: Cells::Numbers(cells.to_vec()),
+                cells: Cells::Numbers(cells.to_vec().into()),
             }],
         };
         let both = table(&[-1.0, 2.0]);

@@ -85,7 +85,7 @@ fn labels(table: &Table, groups: &[String]) -> Result<Vec<String>, Error> {
     let columns: Vec<_> = columns.collect::<Result<_, _>>()?;
     let label = |row: usize| {
         let parts = columns.iter().map(|column| match &column.cells {
-            Cells::Numbers(numbers) => numbers[row].to_string(),
+            Cells::Numbers(numbers) => numbers.at(row).to_string(),
             Cells::Categories(categories) => {
                 categories.codes[row].map_or_else(String::new, |c| categories.levels[c].clone())
             }

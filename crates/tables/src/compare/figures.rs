@@ -135,7 +135,7 @@ fn plotted_group(
 ) -> PlottedGroup {
     let points = group.rows.iter().zip(&group.values);
     let points = points.map(|(row, value)| GroupPoint {
-        line: data.lines[*row],
+        line: data.line(*row),
         value: *value,
         specimen: specimens.and_then(|own| own.of_row[*row]),
     });

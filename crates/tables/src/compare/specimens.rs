@@ -49,7 +49,7 @@ pub(crate) fn specimen_names(data: &Data, column: &str) -> Result<Vec<Option<Str
     Ok(match &column.cells {
         Cells::Numbers(numbers) => numbers
             .iter()
-            .map(|number| (!number.is_nan()).then(|| number.to_string()))
+            .map(|number: f64| (!number.is_nan()).then(|| number.to_string()))
             .collect(),
         Cells::Categories(categories) => categories
             .codes

@@ -74,7 +74,7 @@ pub fn regress_mixed(
         path: data.path.clone(),
         table,
         comments: Vec::new(),
-        lines: kept.iter().map(|row| data.lines[*row]).collect(),
+        lines: kept.iter().map(|row| data.line(*row)).collect(),
         left_out: data.left_out,
     };
     let inference = infer(request, &chosen, formula, request.contrasts)?;
@@ -234,11 +234,12 @@ fn draw(
         return Ok(());
     };
     let fitted = inferred.0;
+    let lines: Vec<usize> = data.lines.iter().collect();
     let terms: Vec<RandomTerm> = fitted.terms.iter().map(|own| own.term.clone()).collect();
     let mut paintings = mixed_paintings(&MixedShown {
         response,
         observed: &fitted.rows.y,
-        lines: &data.lines,
+        lines: &lines,
         terms: &terms,
         fit: &fitted.fit,
         profiles,
@@ -250,7 +251,7 @@ fn draw(
         estimated: &fitted.columns,
         aliased: &fitted.aliased,
         table: &data.table,
-        lines: &data.lines,
+        lines: &lines,
         residuals: &fitted.fit.residuals,
         estimate: &|weights| estimated(weights, inferred),
         confidence: request.confidence,
@@ -433,9 +434,9 @@ fn predictions(
     };
     let found = predict_mixed(&fitted.fit, uncertainty, &rows, request.confidence);
     let found = found.map_err(mixed)?;
-    let shown = found.iter().zip(&asked.lines);
+    let shown = found.iter().zip(asked.lines.iter());
     Ok(shown
-        .map(|(&prediction, &line)| MixedPredictionOutcome {
+        .map(|(&prediction, line)| MixedPredictionOutcome {
             line,
             prediction,
             original: original_prediction(

@@ -47,7 +47,7 @@ pub fn ranges_of(formula: &Formula, table: &Table, kept: &[usize]) -> Vec<RangeO
     names.dedup();
     let range = |name: String| {
         let values = table.numbers(&name).ok()?;
-        let own = kept.iter().map(|row| values[*row]);
+        let own = kept.iter().map(|row| values.at(*row));
         let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
             (low.min(value), high.max(value))
         });

@@ -217,7 +217,7 @@ fn outcome(
     fit: &LinearFit,
 ) -> Result<RegressOutcome, Error> {
     let settings = rows.x.select_columns(&fit.columns);
-    let lines: Vec<usize> = rows.kept.iter().map(|row| data.lines[*row]).collect();
+    let lines: Vec<usize> = rows.kept.iter().map(|row| data.line(*row)).collect();
     let influence = influence(fit, &rows.y);
     let vif = inflation(&rows.frame, fit);
     let steps = steps_of(rows, selection);
@@ -442,9 +442,9 @@ fn predictions(
         return Ok(Vec::new());
     };
     let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
-    let found = predict(fit, &x).into_iter().zip(&asked.lines);
+    let found = predict(fit, &x).into_iter().zip(asked.lines.iter());
     Ok(found
-        .map(|(prediction, &line)| PredictionOutcome {
+        .map(|(prediction, line)| PredictionOutcome {
             line,
             original: original_prediction(
                 scale,

@@ -31,7 +31,7 @@ use windfall_files::write_file::check_outputs;
 use windfall_statistics::model::anova::{Anova, anova_within};
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
-use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
+use windfall_statistics::model::model_frame::rows_with_all;
 use windfall_statistics::residuals::diagnostics::{inflation, influence};
 use windfall_statistics::surface::analysis::{
     Shape, Surface, canonical, fit_surface_in_blocks, ridge, surface_lack_of_fit,
@@ -199,8 +199,7 @@ fn keep_complete(
     }
     let (kept, left_out) = rows_with_all(&data.table, &names).map_err(|error| data.told(error))?;
     let findings = left_out_finding(&left_out, &data.lines);
-    data.table = chosen_rows(&data.table, &kept).into_owned();
-    data.lines = kept.iter().map(|row| data.lines[*row]).collect();
+    data.keep(&kept);
     match kept.is_empty() {
         true => Err(Error::TableWithoutRows {
             path: request.table.clone(),
@@ -220,7 +219,7 @@ fn response_values(response: &str, data: &Data) -> Result<Vec<f64>, Error> {
             .table
             .numbers(response)
             .map_err(|error| data.told(error))?;
-        return Ok(numbers.to_vec());
+        return Ok(numbers.values().into_owned());
     }
     let node = parse(response).map_err(Error::Statistics)?;
     values(&node, &data.table).map_err(|error| data.told(error))
@@ -258,8 +257,8 @@ fn factor_outcomes(
                 name: name.clone(),
                 centre: coding.centre,
                 half_range: coding.half,
-                lowest: values.iter().copied().fold(f64::INFINITY, f64::min),
-                highest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                lowest: values.iter().fold(f64::INFINITY, f64::min),
+                highest: values.iter().fold(f64::NEG_INFINITY, f64::max),
             })
         })
         .collect()
@@ -285,12 +284,13 @@ fn model_of(
         &|outer, inner| contains(&monomials[outer], &monomials[inner]),
     );
     let influence = influence(fit, y);
+    let lines: Vec<usize> = data.lines.iter().collect();
     let vif = inflation(&surface.frame, fit);
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     let quality = fit.quality(y);
     let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
     let mut findings = aliased_findings(&surface.frame, &fit.aliased);
-    findings.extend(fit_findings(fit, &influence, &vif, &data.lines, &[]));
+    findings.extend(fit_findings(fit, &influence, &vif, &lines, &[]));
     let lack_of_fit = surface_lack_of_fit(surface, &coded.values, y);
     findings.extend(lack_finding(lack_of_fit.as_ref()));
     if !is_hierarchical(&surface.terms.monomials) {
@@ -325,7 +325,7 @@ fn model_of(
         lack_of_fit,
         canonical: canonical_of(surface, coded),
         ridge: ridge_of(surface, coded),
-        influence: rows_of(influence, &data.lines),
+        influence: rows_of(influence, &lines),
     };
     (outcome, findings)
 }
