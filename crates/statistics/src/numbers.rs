@@ -160,6 +160,16 @@ impl Numbers {
         values.iter().copied().chain(all)
     }
 
+    /// Those of some rows, kept as they are.
+    pub fn chosen(&self, rows: &[usize]) -> Self {
+        Self(match &self.0 {
+            Kept::Doubles(own) => Kept::Doubles(rows.iter().map(|row| own[*row]).collect()),
+            Kept::Decimals(own, places) => {
+                Kept::Decimals(rows.iter().map(|row| own[*row]).collect(), *places)
+            }
+        })
+    }
+
     /// All of them as doubles.
     pub fn values(&self) -> Cow<'_, [f64]> {
         self.within(0..self.len())

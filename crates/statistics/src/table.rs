@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::numbers::Numbers;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use windfall_numerics::unit::nearest_name::nearest_names;
 
@@ -167,6 +168,14 @@ impl Cells {
                     ordered: true,
                 }
             }
+        }
+    }
+
+    /// [`Cells::categories`], without a copy where they are some.
+    pub fn as_categories(&self) -> Cow<'_, Categories> {
+        match self {
+            Self::Categories(categories) => Cow::Borrowed(categories),
+            Self::Numbers(_) => Cow::Owned(self.categories()),
         }
     }
 

@@ -32,6 +32,12 @@ pub struct Data {
 }
 
 impl Data {
+    /// Names of its columns.
+    pub fn names(&self) -> Vec<String> {
+        let columns = self.table.columns.iter();
+        columns.map(|column| column.name.clone()).collect()
+    }
+
     /// Line of a row in the file; 0 of a row that is not there.
     pub fn line(&self, row: usize) -> usize {
         self.lines.get(row).unwrap_or_default()

@@ -15,7 +15,7 @@ use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::number;
-use windfall_statistics::model::model_frame::rows_with_all;
+use windfall_statistics::model::model_rows::rows_with_all;
 use windfall_statistics::surface::analysis::{Canonical, Shape, Surface, canonical, fit_surface};
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::terms::{

@@ -1,9 +1,11 @@
 //! Analysis of variance of linear models.
 
 use crate::distribution::tail::f_upper;
+use crate::error::Error;
 use crate::model::model_frame::ModelFrame;
+use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::Reduced;
-use nalgebra::DMatrix;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::hash::{DefaultHasher, Hasher};
 
@@ -162,29 +164,28 @@ pub struct LackOfFit {
     pub pure_error: SumOfSquares,
 }
 
-/// Splits the residuals into lack of fit and pure error of rows with equal `settings`; `None`
+/// Splits the residuals into lack of fit and pure error of rows with equal settings; `None`
 /// without repeated rows. A model with a coefficient for every setting leaves no degrees of
 /// freedom for the lack of fit.
-pub fn lack_of_fit(
-    settings: &DMatrix<f64>,
+///
+/// * `x`: the settings; `columns`: those of its columns that count
+///
+/// # Errors
+/// A setting is undefined.
+///
+/// # Numerics
+/// Settings are told apart by 128 bits of a hash: with a million of them, two are taken for
+/// equal with a probability of 1e-27.
+pub fn lack_of_fit<'a>(
+    x: impl Into<ModelMatrix<'a>>,
+    columns: &[usize],
     y: &[f64],
-    residual_ss: f64,
-    residual_df: usize,
-) -> Option<LackOfFit> {
-    // Sorted by a hash, rows with equal settings stand together; a row of numbers as the key of
-    // each would need as much memory as the settings.
-    let mut keys = vec![DefaultHasher::new(); y.len()];
-    for column in settings.column_iter() {
-        for (key, value) in keys.iter_mut().zip(&column) {
-            // Zeros of both signs are one setting.
-            key.write_u64((value + 0.0).to_bits());
-        }
-    }
-    let keys = keys.iter().map(DefaultHasher::finish);
-    let mut order: Vec<(u64, usize)> = keys.zip(0..).collect();
-    order.sort_unstable();
+    (residual_ss, residual_df): (f64, usize),
+) -> Result<Option<LackOfFit>, Error> {
+    let keys = keys_of(&x.into(), columns)?;
+    let same = |a: usize, b: usize| keys[a] == keys[b];
+    let order = repeated(&keys);
     let (mut pure_ss, mut pure_df) = (0.0, 0);
-    let same = |a: usize, b: usize| settings.row(a) == settings.row(b);
     for group in order.chunk_by(|a, b| a.0 == b.0 && same(a.1, b.1)) {
         let group: Vec<usize> = group.iter().map(|(_, row)| *row).collect();
         let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
@@ -195,7 +196,7 @@ pub fn lack_of_fit(
         pure_df += group.len() - 1;
     }
     if pure_df == 0 || residual_df < pure_df {
-        return None;
+        return Ok(None);
     }
     let df = residual_df - pure_df;
     let ss = if df == 0 {
@@ -203,11 +204,54 @@ pub fn lack_of_fit(
     } else {
         (residual_ss - pure_ss).max(0.0)
     };
-    Some(LackOfFit {
+    Ok(Some(LackOfFit {
         lack: row("lack of fit", ss, df, (pure_ss, pure_df)),
         pure_error: SumOfSquares {
             ss: pure_ss,
             df: pure_df as f64,
         },
-    })
+    }))
+}
+
+/// Hashes of the settings of each row.
+fn keys_of(x: &ModelMatrix, columns: &[usize]) -> Result<Vec<[u64; 2]>, Error> {
+    let mut keys = vec![[0; 2]; x.rows()];
+    let parts = keys.par_chunks_mut(BLOCK).enumerate();
+    parts.try_for_each(|(place, keys)| {
+        let start = place * BLOCK;
+        let x = x.block(start..start + keys.len())?;
+        for (row, key) in keys.iter_mut().enumerate() {
+            let mut hasher = DefaultHasher::new();
+            for column in columns {
+                // Zeros of both signs are one setting.
+                hasher.write_u64((x[(row, *column)] + 0.0).to_bits());
+            }
+            key[0] = hasher.finish();
+            hasher.write_u8(0);
+            key[1] = hasher.finish();
+        }
+        Ok::<(), Error>(())
+    })?;
+    Ok(keys)
+}
+
+/// Rows in the order of their first hash, without most of those that are alone with theirs.
+fn repeated(keys: &[[u64; 2]]) -> Vec<(u64, usize)> {
+    let mask = (16 * keys.len().max(4)).next_power_of_two() as u64 - 1;
+    let mut seen = vec![0_u64; (mask as usize + 1) / 64];
+    let mut twice = Vec::new();
+    for [key, _] in keys {
+        let (word, bit) = ((key & mask) as usize / 64, 1 << (key & 63));
+        if seen[word] & bit != 0 {
+            twice.push(key & mask);
+        }
+        seen[word] |= bit;
+    }
+    twice.sort_unstable();
+    twice.dedup();
+    let among = |key: &u64| twice.binary_search(&(key & mask)).is_ok();
+    let rows = keys.iter().map(|key| key[0]).zip(0..);
+    let mut order: Vec<(u64, usize)> = rows.filter(|(key, _)| among(key)).collect();
+    order.sort_unstable();
+    order
 }

@@ -5,7 +5,8 @@ use crate::mixed::predict::NewTerm;
 use crate::mixed::term::RandomTerm;
 use crate::model::contrast::Contrast;
 use crate::model::formula::{Formula, RandomPart};
-use crate::model::model_frame::{ModelFrame, model_rows, prediction_rows};
+use crate::model::model_frame::{ModelFrame, prediction_rows};
+use crate::model::model_rows::model_rows;
 use crate::table::{Cells, Table};
 
 /// A random term and how its columns came about.

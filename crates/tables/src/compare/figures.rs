@@ -29,7 +29,8 @@ pub(crate) fn draw_comparison(
     specimen: Option<&str>,
     outcome: &CompareOutcome,
 ) -> Result<(), Error> {
-    let column = specimen.or_else(|| specimen_column(data));
+    let names = data.names();
+    let column = specimen.or_else(|| specimen_column(&names));
     let specimens = column.map(|column| Specimens::of(data, groups, column));
     let specimens = specimens.transpose()?;
     let plotted = groups.groups.iter().zip(&outcome.groups).enumerate();

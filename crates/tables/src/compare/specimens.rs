@@ -10,9 +10,9 @@ use windfall_statistics::table::Cells;
 const SPECIMEN_COLUMNS: [&str; 5] = ["specimen", "fruit", "sample", "specimen_id", "fruit_id"];
 
 /// The column whose name says that rows may repeat a specimen, if there is one.
-pub(crate) fn specimen_column(data: &Data) -> Option<&str> {
+pub(crate) fn specimen_column(names: &[String]) -> Option<&str> {
     let known = |name: &str| SPECIMEN_COLUMNS.contains(&name.to_lowercase().as_str());
-    let mut names = data.table.columns.iter().map(|column| column.name.as_str());
+    let mut names = names.iter().map(String::as_str);
     names.find(|name| known(name))
 }
 

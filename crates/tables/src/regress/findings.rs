@@ -14,7 +14,7 @@ use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_frame::ModelFrame;
 use windfall_statistics::model::reduced::Aliased;
 use windfall_statistics::numbers::Numbers;
-use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
+use windfall_statistics::residuals::diagnostics::{Inflation, Influence, RowInfluence};
 use windfall_statistics::runs::Runs;
 use windfall_statistics::table::Table;
 
@@ -252,9 +252,9 @@ fn dependence(frame: &ModelFrame, aliased: &Aliased) -> String {
 /// What is weak about a fit.
 pub(crate) fn fit_findings(
     fit: &LinearFit,
-    influence: &[RowInfluence],
+    influence: &Influence,
     vif: &[Inflation],
-    lines: &[usize],
+    lines: &Runs,
     steps: &[StepOutcome],
 ) -> Vec<FindingOutcome> {
     let mut found = Vec::new();
@@ -288,9 +288,9 @@ pub(crate) fn fit_findings(
         ));
     }
     let at = |chosen: &dyn Fn(&RowInfluence) -> bool| -> Vec<usize> {
-        let rows = influence.iter().zip(lines);
+        let rows = influence.iter().zip(lines.iter());
         rows.filter(|(row, _)| chosen(row))
-            .map(|(_, line)| *line)
+            .map(|(_, line)| line)
             .collect()
     };
     let alone = at(&|row| row.leverage > 1.0 - 1e-9);

@@ -4,7 +4,7 @@ use crate::design::coding::number_factors;
 use crate::regress::findings::{
     aliased_findings, finding, fit_findings, lack_finding, left_out_finding,
 };
-use crate::regress::outcome::rows_of;
+use crate::regress::outcome::RowOutcomes;
 use crate::regress::run::check_part;
 use crate::surface::blocks::{block_column, block_outcome, blocks_finding, blocks_of};
 use crate::surface::factors::{coded_factors, coding_findings, coding_text};
@@ -31,8 +31,8 @@ use windfall_files::write_file::check_outputs;
 use windfall_statistics::model::anova::{Anova, anova_within};
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
-use windfall_statistics::model::model_frame::rows_with_all;
-use windfall_statistics::residuals::diagnostics::{inflation, influence};
+use windfall_statistics::model::model_rows::rows_with_all;
+use windfall_statistics::residuals::diagnostics::{Influence, inflation, influence};
 use windfall_statistics::surface::analysis::{
     Shape, Surface, canonical, fit_surface_in_blocks, ridge, surface_lack_of_fit,
 };
@@ -284,13 +284,12 @@ fn model_of(
         &|outer, inner| contains(&monomials[outer], &monomials[inner]),
     );
     let influence = influence(fit, y);
-    let lines: Vec<usize> = data.lines.iter().collect();
     let vif = inflation(&surface.frame, fit);
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     let quality = fit.quality(y);
     let names: Vec<String> = surface.factors.iter().map(|f| f.name.clone()).collect();
     let mut findings = aliased_findings(&surface.frame, &fit.aliased);
-    findings.extend(fit_findings(fit, &influence, &vif, &lines, &[]));
+    findings.extend(fit_findings(fit, &influence, &vif, &data.lines, &[]));
     let lack_of_fit = surface_lack_of_fit(surface, &coded.values, y);
     findings.extend(lack_finding(lack_of_fit.as_ref()));
     if !is_hierarchical(&surface.terms.monomials) {
@@ -325,7 +324,7 @@ fn model_of(
         lack_of_fit,
         canonical: canonical_of(surface, coded),
         ridge: ridge_of(surface, coded),
-        influence: rows_of(influence, &lines),
+        influence: RowOutcomes::new(Influence::of(fit.clone(), y.to_vec()), data.lines.clone()),
     };
     (outcome, findings)
 }
