@@ -1,6 +1,7 @@
 //! Columns of numbers. Those that were written with few digits are kept as whole numbers over
 //! one power of ten, which takes half the memory of doubles and gives back the same doubles.
 
+use crate::runs::Runs;
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -160,6 +161,23 @@ impl Numbers {
         values.iter().copied().chain(all)
     }
 
+    /// The smallest and the largest of some rows; infinite, and the wrong way round, of none.
+    pub fn range(&self, rows: &Runs) -> (f64, f64) {
+        let own = rows.within(0..rows.len()).flat_map(|run| self.parts(run));
+        own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), part| {
+            let own = part.iter();
+            own.fold((low, high), |(low, high), own| {
+                (low.min(*own), high.max(*own))
+            })
+        })
+    }
+
+    /// Rows as doubles, a few at a time.
+    fn parts(&self, rows: Range<usize>) -> impl Iterator<Item = Cow<'_, [f64]>> {
+        let starts = rows.clone().step_by(1024);
+        starts.map(move |start| self.within(start..(start + 1024).min(rows.end)))
+    }
+
     /// Those of some rows, kept as they are.
     pub fn chosen(&self, rows: &[usize]) -> Self {
         Self(match &self.0 {
@@ -258,6 +276,8 @@ mod tests {
         }
         assert!(matches!(&numbers.0, Kept::Doubles(_)));
         numbers.append(&Numbers::compact(&[4.5]));
+        let rows = [1, 2, 5].into_iter().collect();
+        assert_eq!(numbers.range(&rows), (0.125, 2.0));
         assert_eq!(numbers.within(9..11).as_ref(), [0.5, 4.5]);
     }
 }

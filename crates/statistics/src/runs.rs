@@ -43,6 +43,28 @@ impl Runs {
         runs.flat_map(|((begins, first), end)| *first..first + (end - begins))
     }
 
+    /// The numbers at some places, from 0.
+    pub fn at(&self, places: &Self) -> Self {
+        let mut found = Self::default();
+        for run in places.within(0..places.len()) {
+            self.within(run).for_each(|own| found.push_run(own));
+        }
+        found
+    }
+
+    /// Appends numbers, which are larger than those before them.
+    pub fn append(&mut self, others: &Self) {
+        let runs = others.within(0..others.len());
+        runs.for_each(|run| self.push_run(run));
+    }
+
+    fn push_run(&mut self, mut run: std::ops::Range<usize>) {
+        if let Some(first) = run.next() {
+            self.push(first);
+            self.len += run.len();
+        }
+    }
+
     /// Runs of numbers at some places, from 0, in their order.
     pub fn within(
         &self,
@@ -86,6 +108,9 @@ mod tests {
         let at: Vec<Option<usize>> = (0..7).map(|place| runs.get(place)).collect();
         assert_eq!(at[..6], numbers.map(Some));
         assert_eq!((at[6], Runs::default().get(0)), (None, None));
+        let places = [1, 2, 3, 5].into_iter().collect();
+        assert!(runs.at(&places).iter().eq([3, 4, 7, 10]));
+        assert_eq!(runs.at(&(0..6).collect()), runs);
         for from in 0..=6 {
             for to in from..=6 {
                 let found = runs.within(from..to).flatten();

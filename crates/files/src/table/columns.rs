@@ -101,9 +101,10 @@ impl<'a> Manner<'a> {
 /// A number of digits, a point and a sign: nearly all numbers are.
 fn plain_number(cell: &str) -> Option<f64> {
     let (number, length) = leading_number(cell.as_bytes(), b'.')?;
-    // Letters are left to the standard library, which knows other words for exponents.
-    let letters = || cell.bytes().any(|byte| byte.is_ascii_alphabetic());
-    (length == cell.len() && !letters()).then_some(number)
+    // Letters, of which this bit is set, are left to the standard library, which knows other
+    // words for exponents.
+    let bits = cell.bytes().fold(0, |bits, byte| bits | byte);
+    (length == cell.len() && bits & 0x40 == 0).then_some(number)
 }
 
 /// * `comma`: whether a comma may be the decimal mark
@@ -403,7 +404,7 @@ fn append(
             text,
         });
     }
-    columns.lines.extend(part.lines.iter());
+    columns.lines.append(&part.lines);
     columns.left_out += part.left_out;
     part.fault.map_or(Ok(()), Err)
 }

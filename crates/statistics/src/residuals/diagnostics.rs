@@ -84,6 +84,14 @@ impl Influence<'_> {
         (0..self.len()).map(|row| self.row(row))
     }
 
+    /// Rows, from 0, of which something holds.
+    pub fn places(&self, chosen: fn(&RowInfluence) -> bool) -> Vec<usize> {
+        (0..self.len())
+            .filter(|row| chosen(&self.row(*row)))
+            .collect()
+    }
+
+    #[inline]
     fn row(&self, row: usize) -> RowInfluence {
         let (residual, leverage) = (self.residuals[row], self.leverages[row]);
         let (observed, left) = (self.observed[row], 1.0 - leverage);

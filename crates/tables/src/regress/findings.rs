@@ -287,13 +287,11 @@ pub(crate) fn fit_findings(
             ),
         ));
     }
-    let at = |chosen: &dyn Fn(&RowInfluence) -> bool| -> Vec<usize> {
-        let rows = influence.iter().zip(lines.iter());
-        rows.filter(|(row, _)| chosen(row))
-            .map(|(_, line)| line)
-            .collect()
+    let at = |chosen: fn(&RowInfluence) -> bool| -> Vec<usize> {
+        let rows = influence.places(chosen).into_iter();
+        rows.filter_map(|row| lines.get(row)).collect()
     };
-    let alone = at(&|row| row.leverage > 1.0 - 1e-9);
+    let alone = at(|row| row.leverage > 1.0 - 1e-9);
     if !alone.is_empty() && fit.residual_df > 0 {
         found.push(finding(
             "decides-alone",
@@ -303,14 +301,14 @@ pub(crate) fn fit_findings(
             ),
         ));
     }
-    let influential = at(&|row| row.cook > 1.0 && row.leverage <= 1.0 - 1e-9);
+    let influential = at(|row| row.cook > 1.0 && row.leverage <= 1.0 - 1e-9);
     if !influential.is_empty() {
         found.push(finding(
             "influential",
             format!("Cook's distance above 1 in {}", lines_text(&influential)),
         ));
     }
-    let far = at(&|row| row.studentised.abs() > 4.0);
+    let far = at(|row| row.studentised.abs() > 4.0);
     if !far.is_empty() {
         found.push(finding(
             "outlying",

@@ -48,10 +48,7 @@ pub fn ranges_of(formula: &Formula, table: &Table, kept: &Runs) -> Vec<RangeOutc
     names.dedup();
     let range = |name: String| {
         let values = table.numbers(&name).ok()?;
-        let own = kept.iter().map(|row| values.at(row));
-        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
+        let (low, high) = values.range(kept);
         Some(RangeOutcome {
             column: name,
             low,

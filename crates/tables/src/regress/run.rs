@@ -40,7 +40,6 @@ use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, c
 use windfall_statistics::residuals::diagnostics::{
     Inflation, Influence, inflation, influence, robust_coefficients, robust_covariance,
 };
-use windfall_statistics::runs::Runs;
 
 /// A fitted linear model.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -182,7 +181,7 @@ fn regress_linear(
     )
     .map_err(told)?;
     let mut outcome = outcome(request, data, formula, &rows, &reduced, &selection, &fit)?;
-    let lines = rows.kept.iter().map(|row| data.line(row)).collect();
+    let lines = data.lines.at(&rows.kept);
     if let Some(folder) = &request.figures {
         let shown = (outcome.response.as_str(), &lines, &outcome.covariance[..]);
         draw_linear(folder, request, data, (&rows, &fit), shown)?;
@@ -235,7 +234,7 @@ fn outcome(
     fit: &LinearFit,
 ) -> Result<RegressOutcome, Error> {
     let told = |error| data.told(error);
-    let lines: Runs = rows.kept.iter().map(|row| data.line(row)).collect();
+    let lines = data.lines.at(&rows.kept);
     let influence = influence(fit, &rows.y);
     let vif = inflation(&rows.frame, fit);
     let steps = steps_of(rows, selection);
