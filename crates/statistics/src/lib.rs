@@ -12,12 +12,13 @@ pub mod distribution;
 pub mod error;
 pub mod mixed;
 pub mod model;
-pub mod numbers;
 mod orthonormal;
 pub mod power;
 pub mod residuals;
-pub mod runs;
 pub mod sample;
 pub mod sample_error;
 pub mod surface;
 pub mod table;
+
+// What columns and rows of tables are made of.
+pub use windfall_numerics::{numbers, runs};

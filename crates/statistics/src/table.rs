@@ -192,6 +192,14 @@ impl Cells {
         self.len() == 0
     }
 
+    /// Whether any cell is missing.
+    pub fn any_missing(&self) -> bool {
+        match self {
+            Self::Numbers(numbers) => numbers.any_missing(),
+            Self::Categories(categories) => categories.codes.contains(&None),
+        }
+    }
+
     /// Whether the cell of a row is missing.
     pub fn is_missing(&self, row: usize) -> bool {
         match self {

@@ -1,12 +1,13 @@
 //! Groups of a table's rows, and what each group's values look like.
 
-use crate::accurate_sum::{mean, standard_deviation};
+use crate::accurate_sum::{mean, squares_about};
 use crate::distribution::quantile::quantiles;
 use crate::distribution::tail::t_upper_quantile;
 use crate::error::Error;
 use crate::sample::check_probability;
 use crate::table::{Categories, Table};
 use std::borrow::Cow;
+use windfall_numerics::double_double::DoubleDouble;
 
 /// The values of one group of rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,8 +148,13 @@ fn joined(keys: &mut [u32], count: usize, column: &Categories) -> usize {
             there
         }
     };
+    // Where all pairs are there, each is its own rank.
+    let all = ranks.len() == count * levels;
     for (key, code) in keys.iter_mut().zip(&column.codes) {
-        let rank = pair((key, code)).and_then(|pair| ranks.binary_search(&pair).ok());
+        let rank = pair((key, code)).and_then(|pair| match all {
+            true => Some(pair),
+            false => ranks.binary_search(&pair).ok(),
+        });
         *key = rank.map_or(NONE, |rank| rank as u32);
     }
     ranks.len()
@@ -162,8 +168,13 @@ pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> 
     check_probability("the confidence", confidence)?;
     let values = &group.values;
     let n = values.len();
-    let mean = mean(values).value();
-    let deviation = standard_deviation(values);
+    let centre = mean(values);
+    let mean = centre.value();
+    let deviation = match n {
+        0 | 1 => f64::NAN,
+        _ => (squares_about(values, centre) / DoubleDouble::from((n - 1) as f64)).value(),
+    };
+    let deviation = deviation.sqrt();
     let error = deviation / (n as f64).sqrt();
     let reach = match n {
         0 | 1 => f64::NAN,

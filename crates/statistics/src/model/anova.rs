@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::Reduced;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::hash::{DefaultHasher, Hasher};
@@ -182,11 +183,9 @@ pub fn lack_of_fit<'a>(
     y: &[f64],
     (residual_ss, residual_df): (f64, usize),
 ) -> Result<Option<LackOfFit>, Error> {
-    let keys = keys_of(&x.into(), columns)?;
-    let same = |a: usize, b: usize| keys[a] == keys[b];
-    let order = repeated(&keys);
+    let order = repeated(&x.into(), columns)?;
     let (mut pure_ss, mut pure_df) = (0.0, 0);
-    for group in order.chunk_by(|a, b| a.0 == b.0 && same(a.1, b.1)) {
+    for group in order.chunk_by(|a, b| a.0 == b.0) {
         let group: Vec<usize> = group.iter().map(|(_, row)| *row).collect();
         let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
         pure_ss += group
@@ -213,45 +212,66 @@ pub fn lack_of_fit<'a>(
     }))
 }
 
-/// Hashes of the settings of each row.
-fn keys_of(x: &ModelMatrix, columns: &[usize]) -> Result<Vec<[u64; 2]>, Error> {
-    let mut keys = vec![[0; 2]; x.rows()];
-    let parts = keys.par_chunks_mut(BLOCK).enumerate();
-    parts.try_for_each(|(place, keys)| {
-        let start = place * BLOCK;
-        let x = x.block(start..start + keys.len())?;
-        for (row, key) in keys.iter_mut().enumerate() {
-            let mut hasher = DefaultHasher::new();
-            for column in columns {
-                // Zeros of both signs are one setting.
-                hasher.write_u64((x[(row, *column)] + 0.0).to_bits());
-            }
-            key[0] = hasher.finish();
-            hasher.write_u8(0);
-            key[1] = hasher.finish();
-        }
-        Ok::<(), Error>(())
-    })?;
-    Ok(keys)
+/// Hash of the settings of a row.
+fn key_of(x: &DMatrix<f64>, row: usize, columns: &[usize]) -> [u64; 2] {
+    let mut hasher = DefaultHasher::new();
+    for column in columns {
+        // Zeros of both signs are one setting.
+        hasher.write_u64((x[(row, *column)] + 0.0).to_bits());
+    }
+    let first = hasher.finish();
+    hasher.write_u8(0);
+    [first, hasher.finish()]
 }
 
-/// Rows in the order of their first hash, without most of those that are alone with theirs.
-fn repeated(keys: &[[u64; 2]]) -> Vec<(u64, usize)> {
-    let mask = (16 * keys.len().max(4)).next_power_of_two() as u64 - 1;
-    let mut seen = vec![0_u64; (mask as usize + 1) / 64];
-    let mut twice = Vec::new();
-    for [key, _] in keys {
-        let (word, bit) = ((key & mask) as usize / 64, 1 << (key & 63));
-        if seen[word] & bit != 0 {
-            twice.push(key & mask);
-        }
-        seen[word] |= bit;
-    }
-    twice.sort_unstable();
-    twice.dedup();
-    let among = |key: &u64| twice.binary_search(&(key & mask)).is_ok();
-    let rows = keys.iter().map(|key| key[0]).zip(0..);
-    let mut order: Vec<(u64, usize)> = rows.filter(|(key, _)| among(key)).collect();
+/// Rows in the order of their hashes, without most of those that are alone with theirs.
+fn repeated(x: &ModelMatrix, columns: &[usize]) -> Result<Vec<([u64; 2], usize)>, Error> {
+    // A part of each hash takes little memory and shows nearly all that are alone.
+    let parts = x.each_block(|_, x| {
+        let rows = 0..x.nrows();
+        rows.map(|row| key_of(x, row, columns)[0] as u32)
+            .collect::<Vec<u32>>()
+    })?;
+    let rows = twice(&parts.concat());
+    let blocks: Vec<&[usize]> = rows.chunk_by(|a, b| a / BLOCK == b / BLOCK).collect();
+    let keyed = blocks.into_par_iter().map(|rows| {
+        let start = rows[0] / BLOCK * BLOCK;
+        let x = x.block(start..(start + BLOCK).min(x.rows()))?;
+        let keyed = rows
+            .iter()
+            .map(|row| (key_of(&x, row - start, columns), *row));
+        Ok(keyed.collect::<Vec<_>>())
+    });
+    let keyed: Vec<Result<Vec<_>, Error>> = keyed.collect();
+    let keyed: Vec<Vec<_>> = keyed.into_iter().collect::<Result<_, _>>()?;
+    let mut order = keyed.concat();
     order.sort_unstable();
-    order
+    Ok(order)
+}
+
+/// Places of numbers that occur more than once, in their order.
+fn twice(numbers: &[u32]) -> Vec<usize> {
+    let mask = (16 * numbers.len()).clamp(64, 1 << 31).next_power_of_two() - 1;
+    let mut seen = vec![0_u64; (mask + 1) / 64];
+    let mut again = Vec::new();
+    for number in numbers {
+        let place = *number as usize & mask;
+        let (word, bit) = (&mut seen[place / 64], 1 << (place % 64));
+        if *word & bit != 0 {
+            again.push(place);
+        }
+        *word |= bit;
+    }
+    again.sort_unstable();
+    again.dedup();
+    let among = |number: &u32| again.binary_search(&(*number as usize & mask)).is_ok();
+    let found = numbers.iter().copied().zip(0..);
+    let mut found: Vec<(u32, usize)> = found.filter(|(number, _)| among(number)).collect();
+    found.sort_unstable();
+    let groups = found
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|own| own.len() > 1);
+    let mut places: Vec<usize> = groups.flatten().map(|own| own.1).collect();
+    places.sort_unstable();
+    places
 }

@@ -143,7 +143,11 @@ fn matrix(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>, Error> {
             x.column_mut(column).copy_from_slice(&values);
         }
     }
-    if let Some(place) = x.iter().position(|value| !value.is_finite()) {
+    let finite = x
+        .as_slice()
+        .iter()
+        .fold(true, |all, own| all & own.is_finite());
+    if !finite && let Some(place) = x.iter().position(|value| !value.is_finite()) {
         return Err(Error::NotFinite {
             expression: frame.names[place / rows].clone(),
             value: x[(place % rows, place / rows)],

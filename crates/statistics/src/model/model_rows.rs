@@ -207,7 +207,7 @@ pub fn rows_with_all(table: &Table, names: &[String]) -> Result<Completeness, Er
 fn complete(table: &Table, names: &[String]) -> Result<(Runs, Vec<(usize, String)>), Error> {
     let columns = names.iter().map(|name| table.column(name));
     let mut columns: Vec<_> = columns.collect::<Result<_, _>>()?;
-    columns.retain(|column| (0..table.rows()).any(|row| column.cells.is_missing(row)));
+    columns.retain(|column| column.cells.any_missing());
     let (mut kept, mut left_out) = (Runs::default(), Vec::new());
     for row in 0..table.rows() {
         match columns.iter().find(|column| column.cells.is_missing(row)) {

@@ -143,6 +143,14 @@ impl Numbers {
         self.len() == 0
     }
 
+    /// Whether any is missing.
+    pub fn any_missing(&self) -> bool {
+        match &self.0 {
+            Kept::Doubles(values) => values.iter().any(|own| own.is_nan()),
+            Kept::Decimals(all, _) => all.contains(&MISSING),
+        }
+    }
+
     /// The number of a row, from 0.
     pub fn at(&self, row: usize) -> f64 {
         match &self.0 {
@@ -246,6 +254,7 @@ mod tests {
         let numbers = Numbers::compact(&few);
         assert!(matches!(&numbers.0, Kept::Decimals(_, 4)));
         same(&numbers, &few);
+        assert!(numbers.any_missing() && !Numbers::compact(&few[3..]).any_missing());
         for odd in [1.0 / 3.0, -0.0, 1e12, 5e-324, f64::INFINITY, 2147483648.0] {
             let all = [few.as_slice(), &[odd]].concat();
             let mixed = Numbers::compact(&all);
