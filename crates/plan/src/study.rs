@@ -11,7 +11,8 @@ use windfall_statistics::mixed::fit::{MixedFit, MixedOptions, fit_mixed};
 use windfall_statistics::mixed::term::RandomTerm;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::{Formula, formula};
-use windfall_statistics::model::model_frame::{ModelFrame, chosen_rows, complete_rows, model_rows};
+use windfall_statistics::model::model_frame::ModelFrame;
+use windfall_statistics::model::model_rows::{complete_rows, model_rows};
 use windfall_statistics::model::random_terms::random_terms;
 use windfall_statistics::model::reduced::reduce;
 use windfall_tables::reading::ReadingOptions;
@@ -88,8 +89,7 @@ pub(crate) fn read_study(
         return Err(unusable("--formula", problem));
     }
     let (kept, _) = complete_rows(&formula, &data.table, &[]).map_err(|error| data.told(error))?;
-    data.table = chosen_rows(&data.table, &kept).into_owned();
-    data.lines = kept.iter().map(|row| data.lines[*row]).collect();
+    data.keep(&kept);
     let study = study_of(&formula, &data)?;
     Ok((study, data))
 }

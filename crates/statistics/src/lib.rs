@@ -19,3 +19,6 @@ pub mod sample;
 pub mod sample_error;
 pub mod surface;
 pub mod table;
+
+// What columns and rows of tables are made of.
+pub use windfall_numerics::{numbers, runs};

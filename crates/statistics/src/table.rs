@@ -1,6 +1,8 @@
 //! Columns of numbers and of categories.
 
 use crate::error::Error;
+use crate::numbers::Numbers;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use windfall_numerics::unit::nearest_name::nearest_names;
 
@@ -24,7 +26,7 @@ pub struct Column {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cells {
     /// Numbers; NaN where a cell is missing.
-    Numbers(Vec<f64>),
+    Numbers(Numbers),
     /// Categories.
     Categories(Categories),
 }
@@ -91,12 +93,24 @@ pub struct LevelCodes {
 impl LevelCodes {
     /// Takes the cell of the next row; `None` where it is missing.
     pub fn push(&mut self, cell: Option<&str>) {
+        let code = cell.map(|cell| self.code(cell));
+        self.codes.push(code);
+    }
+
+    /// Takes the cells of the next rows, by the places of their texts among some.
+    pub fn append<T: AsRef<str>>(&mut self, texts: &[T], codes: &[Option<usize>]) {
+        let known = texts.iter().map(|text| self.code(text.as_ref()));
+        let known: Vec<usize> = known.collect();
+        let codes = codes.iter().map(|code| code.map(|code| known[code]));
+        self.codes.extend(codes);
+    }
+
+    fn code(&mut self, cell: &str) -> usize {
         let next = self.known.len();
-        let code = cell.map(|cell| match self.known.get(cell) {
+        match self.known.get(cell) {
             Some(code) => *code,
             None => *self.known.entry(cell.to_owned()).or_insert(next),
-        });
-        self.codes.push(code);
+        }
     }
 
     /// Categories with the levels in the order of numbers where all are numbers, else of the
@@ -138,12 +152,12 @@ impl Cells {
             Self::Categories(categories) => categories.clone(),
             Self::Numbers(numbers) => {
                 // Zeros of both signs are one level.
-                let value = |x: &f64| x + 0.0;
+                let value = |x: f64| x + 0.0;
                 let known = numbers.iter().filter(|x| !x.is_nan());
                 let mut known: Vec<f64> = known.map(value).collect();
                 known.sort_by(f64::total_cmp);
                 known.dedup();
-                let place = |x: &f64| {
+                let place = |x: f64| {
                     known
                         .binary_search_by(|other| other.total_cmp(&value(x)))
                         .ok()
@@ -154,6 +168,14 @@ impl Cells {
                     ordered: true,
                 }
             }
+        }
+    }
+
+    /// [`Cells::categories`], without a copy where they are some.
+    pub fn as_categories(&self) -> Cow<'_, Categories> {
+        match self {
+            Self::Categories(categories) => Cow::Borrowed(categories),
+            Self::Numbers(_) => Cow::Owned(self.categories()),
         }
     }
 
@@ -170,10 +192,18 @@ impl Cells {
         self.len() == 0
     }
 
+    /// Whether any cell is missing.
+    pub fn any_missing(&self) -> bool {
+        match self {
+            Self::Numbers(numbers) => numbers.any_missing(),
+            Self::Categories(categories) => categories.codes.contains(&None),
+        }
+    }
+
     /// Whether the cell of a row is missing.
     pub fn is_missing(&self, row: usize) -> bool {
         match self {
-            Self::Numbers(numbers) => numbers[row].is_nan(),
+            Self::Numbers(numbers) => numbers.at(row).is_nan(),
             Self::Categories(categories) => categories.codes[row].is_none(),
         }
     }
@@ -207,7 +237,7 @@ impl Table {
     ///
     /// # Errors
     /// [`Error::UnknownColumn`]; [`Error::NotNumbers`] with the first cell.
-    pub fn numbers(&self, name: &str) -> Result<&[f64], Error> {
+    pub fn numbers(&self, name: &str) -> Result<&Numbers, Error> {
         match &self.column(name)?.cells {
             Cells::Numbers(numbers) => Ok(numbers),
             Cells::Categories(categories) => {
@@ -253,7 +283,7 @@ mod tests {
 
     #[test]
     fn closed_form_levels_of_numbers() {
-        let found = Cells::Numbers(vec![1.0, 0.0, -0.0, f64::NAN]).categories();
+        let found = Cells::Numbers(vec![1.0, 0.0, -0.0, f64::NAN].into()).categories();
         assert_eq!(found.levels, ["0", "1"]);
         assert_eq!(found.codes, [Some(1), Some(0), Some(0), None]);
     }
@@ -279,7 +309,7 @@ mod tests {
         let table = Table {
             columns: vec![Column {
                 name: "velocity".to_owned(),
-                cells: Cells::Numbers(vec![1.0]),
+                cells: Cells::Numbers(vec![1.0].into()),
             }],
         };
         let message = table.column("velocty").unwrap_err().to_string();

@@ -7,14 +7,14 @@
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::formula;
 use windfall_statistics::model::linear_model::{LinearFit, fit_reduced};
-use windfall_statistics::model::model_frame::model_rows;
+use windfall_statistics::model::model_rows::model_rows;
 use windfall_statistics::model::reduced::reduce_written;
 use windfall_statistics::table::{Cells, Column, Table};
 
 fn table(columns: &[(&str, Vec<f64>)]) -> Table {
     let columns = columns.iter().map(|(name, values)| Column {
         name: (*name).to_owned(),
-        cells: Cells::Numbers(values.clone()),
+        cells: Cells::Numbers(values.clone().into()),
     });
     Table {
         columns: columns.collect(),

@@ -7,7 +7,7 @@ use windfall_statistics::model::anova::lack_of_fit;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::formula;
 use windfall_statistics::model::linear_model::fit_linear;
-use windfall_statistics::model::model_frame::{ModelRows, model_rows};
+use windfall_statistics::model::model_rows::{ModelRows, model_rows};
 use windfall_statistics::model::reduced::reduce;
 use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions, select};
 use windfall_statistics::residuals::cross_validation::{Parts, cross_validate};
@@ -144,7 +144,7 @@ fn rows() -> ModelRows {
     let wave = |i: usize, speed: f64| (i as f64 * speed).sin();
     let column = |name: &str, values: Vec<f64>| Column {
         name: name.to_owned(),
-        cells: Cells::Numbers(values),
+        cells: Cells::Numbers(values.into()),
     };
     let count = 40;
     let a: Vec<f64> = (0..count).map(|i| wave(i, 0.7)).collect();
@@ -169,7 +169,8 @@ fn rows() -> ModelRows {
 #[test]
 fn closed_form_pure_error_of_repeated_settings() {
     let settings = nalgebra::DMatrix::from_row_slice(5, 1, &[0.0, -0.0, 0.0, 1.0, 2.0]);
-    let found = lack_of_fit(&settings, &[1.0, 2.0, 3.0, 9.0, 5.0], 30.0, 3).unwrap();
+    let found = lack_of_fit(&settings, &[0], &[1.0, 2.0, 3.0, 9.0, 5.0], (30.0, 3));
+    let found = found.unwrap().unwrap();
     assert_eq!((found.pure_error.ss, found.pure_error.df), (2.0, 2.0));
     assert_eq!(
         (found.lack.ss, found.lack.df, found.lack.f),
@@ -191,7 +192,9 @@ fn closed_form_leaving_out_one_by_one() {
             seed: 3,
             units: None,
         };
-        cross_validate(&rows.frame, &rows.x, &rows.y, &terms, None, parts).unwrap()
+        cross_validate(&rows.frame, &rows.x, &rows.y, &terms, None, parts)
+            .unwrap()
+            .unwrap()
     };
     assert!((found.rms.powi(2) * 40.0 / press - 1.0).abs() < 1e-10);
 }

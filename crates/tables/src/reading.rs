@@ -6,7 +6,7 @@ use crate::option_words::trimmed;
 use std::path::Path;
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::{Data, MISSING, read_data_without};
+use windfall_files::table::data::{Data, DataFile, MISSING, Wanted, open_data};
 use windfall_statistics::table::Cells;
 
 /// How a table is read.
@@ -38,7 +38,18 @@ impl ReadingOptions {
     /// It cannot be read; a column whose levels are declared is not there, has another level, or
     /// lacks one.
     pub fn read(&self, path: &Path) -> Result<Data, Error> {
-        let mut data = read_data_without(path, &self.missing)?;
+        self.read_some(open_data(path)?, Wanted::all())
+    }
+
+    /// Reads some columns of a table, and those whose levels are declared.
+    ///
+    /// # Errors
+    /// As [`ReadingOptions::read`].
+    pub fn read_some(&self, file: DataFile, mut wanted: Wanted) -> Result<Data, Error> {
+        for text in &self.levels {
+            wanted.named.push(declared(text)?.0);
+        }
+        let mut data = file.read(&self.missing, &wanted)?;
         // A header that cannot be read, or a design of which only some levels were run, leaves
         // the levels in the order of the alphabet.
         let factors = read_coding(&data.comments).ok().flatten();
@@ -78,7 +89,7 @@ fn declare(data: &mut Data, name: &str, levels: &[String]) -> Result<(), Error> 
     let column = data.table.column(name).map_err(|error| data.told(error))?;
     let found = column.cells.categories().declared(levels);
     let found = found.map_err(|(row, text)| Error::Refused {
-        place: Place::at(&data.path, data.lines[row - 1]),
+        place: Place::at(&data.path, data.line(row - 1)),
         problem: format!(
             "\"{text}\" is none of the levels declared for {name:?}: {}; correct the cell, or \
              declare this level too",

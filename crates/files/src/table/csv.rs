@@ -8,9 +8,11 @@
 use crate::error::{Error, Place};
 use crate::inputs::{check_piped, protect};
 use crate::known_names::told_names;
+use crate::table::records::{Block, Blocks, Records};
 use crate::table::write::plain_cell;
+use std::borrow::Cow;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor, Read};
+use std::io::{BufRead, BufReader, Cursor};
 use std::path::{Path, PathBuf};
 use windfall_formats::text::encoding::{Encoding, tell_encoding};
 use windfall_source::stream::{is_stream, stream_bytes};
@@ -43,18 +45,18 @@ pub struct Row {
 pub fn read_table(path: &Path) -> Result<Table, Error> {
     let mut open = open(path)?;
     let mut rows = Vec::new();
-    let mut record = csv::StringRecord::new();
-    while next_row(&mut open, &mut record)? {
-        let cells = record.iter().map(|cell| plain_cell(cell).to_owned());
-        let cells = cells.collect();
-        rows.push(Row {
-            line: line_of(&open, &record),
-            cells,
-        });
+    while let Some(block) = next_block(&mut open)? {
+        each_row(&open.form, &block, |line, cells| {
+            let cells = cells.iter().map(|cell| plain_cell(cell).to_owned());
+            rows.push(Row {
+                line,
+                cells: cells.collect(),
+            });
+        })?;
     }
     Ok(Table {
         path: path.to_path_buf(),
-        columns: open.columns,
+        columns: open.form.columns,
         rows,
     })
 }
@@ -69,15 +71,21 @@ pub fn column_index(table: &Table, column: &str) -> Result<usize, Error> {
 
 /// A file whose header has been read.
 pub(crate) struct Open {
-    path: PathBuf,
-    /// Names of the columns.
-    pub(crate) columns: Vec<String>,
+    /// What its header says.
+    pub(crate) form: Form,
     /// Lines before the header that begin with `#`, without it.
     pub(crate) comments: Vec<String>,
-    /// Name of the separator.
-    pub(crate) separator: &'static str,
-    before: usize,
-    reader: csv::Reader<Box<dyn Read>>,
+    blocks: Blocks,
+}
+
+/// What the header of a table says.
+pub(crate) struct Form {
+    /// The file.
+    pub(crate) path: PathBuf,
+    /// Names of the columns.
+    pub(crate) columns: Vec<String>,
+    /// What separates cells.
+    pub(crate) separator: (u8, &'static str),
 }
 
 /// Opens a table and reads its header.
@@ -112,21 +120,32 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
             break;
         }
     }
-    let (byte, separator) = separator_of(&header, &below);
-    // The csv crate counts a line at its line feed, which it reads with the row after it.
-    before += usize::from(header.ends_with(b"\r\n"));
-    let whole: Box<dyn Read> =
-        Box::new(Cursor::new(header).chain(Cursor::new(below)).chain(reader));
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(byte)
-        .flexible(true)
-        .from_reader(whole);
-    let columns: Vec<String> = reader
-        .headers()
-        .map_err(|error| csv_error(path, &error))?
-        .iter()
-        .map(|name| plain_cell(name).to_owned())
-        .collect();
+    let separator = separator_of(&header, &below);
+    header.append(&mut below);
+    let mut blocks = Blocks::new(header, before + 1, separator.0, reader);
+    let failed = |source| access(path, source);
+    let columns = match blocks.next_record().map_err(failed)? {
+        Some(header) => names_of(path, &header, separator.0)?,
+        None => Vec::new(),
+    };
+    Ok(Open {
+        form: Form {
+            path: path.to_path_buf(),
+            columns,
+            separator,
+        },
+        comments,
+        blocks,
+    })
+}
+
+/// Names of the columns in a header.
+fn names_of(path: &Path, header: &Block, separator: u8) -> Result<Vec<String>, Error> {
+    let text = text_of(path, header)?;
+    let mut cells = Vec::new();
+    Records::new(text, header.line, separator).next(&mut cells);
+    let columns = cells.iter().map(|name| plain_cell(name).to_owned());
+    let columns: Vec<String> = columns.collect();
     for (index, column) in columns.iter().enumerate() {
         if !column.is_empty() && columns[..index].contains(column) {
             let column = column.clone();
@@ -136,14 +155,7 @@ pub(crate) fn open(path: &Path) -> Result<Open, Error> {
             });
         }
     }
-    Ok(Open {
-        path: path.to_path_buf(),
-        columns,
-        comments,
-        separator,
-        before,
-        reader,
-    })
+    Ok(columns)
 }
 
 /// The text of a file, without byte order mark.
@@ -210,34 +222,67 @@ fn words_of(row: &[u8], separator: u8) -> f64 {
     f64::from(words as u32) / f64::from(all)
 }
 
-/// Reads the next row that is not blank; false at the end of the file.
-pub(crate) fn next_row(open: &mut Open, record: &mut csv::StringRecord) -> Result<bool, Error> {
-    while open
-        .reader
-        .read_record(record)
-        .map_err(|error| csv_error(&open.path, &error))?
-    {
-        if record.len() == open.columns.len() {
-            return Ok(true);
+/// The next rows of a table; `None` at its end.
+pub(crate) fn next_block(open: &mut Open) -> Result<Option<Block>, Error> {
+    let read = open.blocks.next();
+    read.map_err(|source| access(&open.form.path, source))
+}
+
+/// Hands over the rows that are not blank, with their lines in the file, from 1.
+///
+/// # Errors
+/// A ragged row, or text that is not UTF-8: the first of them, after the rows before it.
+pub(crate) fn each_row<'a>(
+    form: &Form,
+    block: &'a Block,
+    mut each: impl FnMut(usize, &[Cow<'a, str>]),
+) -> Result<(), Error> {
+    let (whole, told) = match text_of(&form.path, block) {
+        Ok(text) => (text, Ok(())),
+        Err(error) => (valid_lines(&block.bytes), Err(error)),
+    };
+    let (byte, separator) = form.separator;
+    let mut records = Records::new(whole, block.line, byte);
+    let mut cells = Vec::with_capacity(form.columns.len());
+    while let Some(line) = records.next(&mut cells) {
+        if cells.len() == form.columns.len() {
+            each(line, &cells);
+            continue;
         }
         // A line of nothing but blanks is no row.
-        if record.iter().all(|cell| cell.trim().is_empty()) {
+        if cells.iter().all(|cell| cell.trim().is_empty()) {
             continue;
         }
         return Err(Error::RowRagged {
-            place: Place::at(&open.path, line_of(open, record)),
-            expected: open.columns.len(),
-            found: record.len(),
-            separator: open.separator,
+            place: Place::at(&form.path, line),
+            expected: form.columns.len(),
+            found: cells.len(),
+            separator,
         });
     }
-    Ok(false)
+    told
 }
 
-/// Line of a row in the file, from 1.
-pub(crate) fn line_of(open: &Open, record: &csv::StringRecord) -> usize {
-    let line = record.position().map_or(0, |position| position.line());
-    open.before + line as usize
+/// A block as text.
+fn text_of<'a>(path: &Path, block: &'a Block) -> Result<&'a str, Error> {
+    std::str::from_utf8(&block.bytes).map_err(|error| {
+        let before = &block.bytes[..error.valid_up_to()];
+        Error::NotUtf8 {
+            place: Place::at(
+                path,
+                block.line + memchr::memchr_iter(b'\n', before).count(),
+            ),
+        }
+    })
+}
+
+/// The lines before the first one that is not UTF-8.
+fn valid_lines(bytes: &[u8]) -> &str {
+    let valid = match std::str::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => std::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default(),
+    };
+    valid.rfind('\n').map_or("", |end| &valid[..=end])
 }
 
 fn index_of(path: &Path, columns: &[String], column: &str, by: &str) -> Result<usize, Error> {
@@ -259,25 +304,6 @@ fn access(path: &Path, source: std::io::Error) -> Error {
         return Error::absent(path, "check the name and the directory");
     }
     Error::access(&path, "read", source)
-}
-
-fn csv_error(path: &Path, error: &csv::Error) -> Error {
-    let line = error
-        .position()
-        .map_or(0, |position| position.line() as usize);
-    match error.kind() {
-        csv::ErrorKind::Io(source) => Error::FileAccess {
-            path: path.to_path_buf(),
-            action: "read",
-            source: std::io::Error::new(source.kind(), source.to_string()),
-        },
-        _ => Error::NotUtf8 {
-            place: Place {
-                file: path.to_path_buf(),
-                line,
-            },
-        },
-    }
 }
 
 #[cfg(test)]

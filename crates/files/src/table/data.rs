@@ -2,12 +2,15 @@
 
 use crate::error::{Error, Place};
 use crate::found::FindingOutcome;
-use crate::table::csv::{line_of, next_row, open};
-use crate::table::write::plain_cell;
+use crate::table::columns::{Held, Manner, Reading, read_columns};
+use crate::table::csv::{Open, open};
 use std::path::{Path, PathBuf};
-use windfall_numerics::unit::quantity::LARGEST;
 use windfall_statistics::error::Error as StatisticsError;
-use windfall_statistics::table::{Categories, Cells, Column, LevelCodes, Table};
+use windfall_statistics::model::model_frame::chosen_rows;
+use windfall_statistics::runs::Runs;
+use windfall_statistics::table::{Column, Table};
+
+pub use crate::table::columns::{EXCLUDE_COLUMN, LEFT_OUT_COLUMN, excludes};
 
 /// The word that stands for a missing value where no others are told.
 pub const MISSING: &str = "NA";
@@ -22,13 +25,30 @@ pub struct Data {
     /// Lines before the header that begin with `#`, without it.
     pub comments: Vec<String>,
     /// Line of each row in the file, from 1.
-    pub lines: Vec<usize>,
+    pub lines: Runs,
     /// Rows that do not count: something stands in their column [`LEFT_OUT_COLUMN`] or
     /// [`EXCLUDE_COLUMN`]. They are not in the table.
     pub left_out: usize,
 }
 
 impl Data {
+    /// Names of its columns.
+    pub fn names(&self) -> Vec<String> {
+        let columns = self.table.columns.iter();
+        columns.map(|column| column.name.clone()).collect()
+    }
+
+    /// Line of a row in the file; 0 of a row that is not there.
+    pub fn line(&self, row: usize) -> usize {
+        self.lines.get(row).unwrap_or_default()
+    }
+
+    /// Keeps some rows, in their order.
+    pub fn keep(&mut self, rows: &[usize]) {
+        self.table = chosen_rows(&self.table, rows).into_owned();
+        self.lines = rows.iter().map(|row| self.line(*row)).collect();
+    }
+
     /// Says how many rows do not count, if any.
     pub fn left_out_finding(&self) -> Option<FindingOutcome> {
         let rows = match self.left_out {
@@ -44,37 +64,15 @@ impl Data {
     }
 }
 
-/// Column in which windfall says why an impact does not count.
-pub const LEFT_OUT_COLUMN: &str = "left_out";
-/// Column by which the user leaves a row out.
-pub const EXCLUDE_COLUMN: &str = "exclude";
-/// Cells of [`EXCLUDE_COLUMN`] that leave nothing out.
-const KEPT: [&str; 5] = ["", "0", "no", "false", "n"];
-
-/// Whether a cell of [`EXCLUDE_COLUMN`] leaves its row out.
-pub fn excludes(cell: &str) -> bool {
-    !KEPT.contains(&cell.trim().to_lowercase().as_str())
-}
-
-/// Whether a row counts.
-fn counts(columns: &[String], record: &csv::StringRecord) -> bool {
-    columns
-        .iter()
-        .zip(record)
-        .all(|(name, cell)| match name.as_str() {
-            LEFT_OUT_COLUMN => cell.trim().is_empty(),
-            EXCLUDE_COLUMN => !excludes(cell),
-            _ => true,
-        })
-}
-
 impl Data {
     /// What statistics say about the table, with the file and the line that it is about.
     pub fn told(&self, error: StatisticsError) -> Error {
-        let line = error.row().and_then(|row| self.lines.get(row - 1));
+        let line = error
+            .row()
+            .and_then(|row| self.lines.get(row.checked_sub(1)?));
         match line {
             Some(line) => Error::Refused {
-                place: Place::at(&self.path, *line),
+                place: Place::at(&self.path, line),
                 problem: error.to_string(),
             },
             None if is_of_request(&error) => Error::Statistics(error),
@@ -95,6 +93,52 @@ fn is_of_request(error: &StatisticsError) -> bool {
     )
 }
 
+/// Which columns of a table are read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// Those of these names, whatever they hold. Where one is not in the table, all are read,
+    /// so that what is said about it can name them.
+    pub named: Vec<String>,
+    /// Others too, where they hold numbers.
+    pub numbers: bool,
+    /// All of them.
+    pub all: bool,
+}
+
+impl Wanted {
+    /// All columns.
+    pub fn all() -> Self {
+        Self {
+            all: true,
+            ..Self::default()
+        }
+    }
+
+    fn readings(&self, columns: &[String]) -> Vec<Reading> {
+        let all = self.all || !self.named.iter().all(|name| columns.contains(name));
+        let reading = |name: &String| match (all || self.named.contains(name), self.numbers) {
+            _ if name.is_empty() => Reading::Nothing,
+            (true, _) => Reading::Anything,
+            (false, true) => Reading::Numbers,
+            (false, false) => Reading::Nothing,
+        };
+        columns.iter().map(reading).collect()
+    }
+}
+
+/// A table whose header has been read.
+pub struct DataFile {
+    open: Open,
+}
+
+/// Opens a table.
+///
+/// # Errors
+/// It cannot be read, is empty, or names a column twice.
+pub fn open_data(path: &Path) -> Result<DataFile, Error> {
+    Ok(DataFile { open: open(path)? })
+}
+
 /// Reads a table: columns of numbers and missing cells are numeric, others categories.
 ///
 /// Separated by commas, semicolons or tabs; with semicolons or tabs, numbers may
@@ -104,121 +148,66 @@ fn is_of_request(error: &StatisticsError) -> bool {
 /// As [`crate::table::csv::read_table`]; there is no row; a number that is infinite or beyond
 /// 1e100.
 pub fn read_data(path: &Path) -> Result<Data, Error> {
-    read_data_without(path, &[MISSING.to_owned()])
+    open_data(path)?.read(&[MISSING.to_owned()], &Wanted::all())
 }
 
-/// [`read_data`], where these words stand for a missing value, and blank cells.
-pub fn read_data_without(path: &Path, missing: &[String]) -> Result<Data, Error> {
-    let mut open_file = open(path)?;
-    let comma = open_file.separator != "commas";
-    let columns = open_file.columns.clone();
-    let mut numbers: Vec<Option<Vec<f64>>> = columns.iter().map(|_| Some(Vec::new())).collect();
-    let mut lines = Vec::new();
-    let (mut record, mut left_out) = (csv::StringRecord::new(), 0);
-    while next_row(&mut open_file, &mut record)? {
-        if !counts(&columns, &record) {
-            left_out += 1;
-            continue;
+impl DataFile {
+    /// Names of the columns that have one.
+    pub fn names(&self) -> Vec<String> {
+        let names = self.open.form.columns.iter();
+        names.filter(|name| !name.is_empty()).cloned().collect()
+    }
+
+    /// Reads columns of the table, where some words stand for a missing value, and blank cells.
+    ///
+    /// # Errors
+    /// As [`read_data`]; numbers in columns that are not read are not looked at.
+    pub fn read(mut self, missing: &[String], wanted: &Wanted) -> Result<Data, Error> {
+        let form = &self.open.form;
+        let (path, names) = (form.path.clone(), form.columns.clone());
+        let manner = Manner::new(form, missing);
+        let mut read = read_columns(&mut self.open, &manner, &wanted.readings(&names))?;
+        if read.lines.is_empty() {
+            return Err(Error::TableWithoutRows {
+                path,
+                row_is: "observation",
+            });
         }
-        let line = line_of(&open_file, &record);
-        for ((column, cell), name) in numbers.iter_mut().zip(&record).zip(&columns) {
-            let Some(values) = column else { continue };
-            let cell = plain_cell(cell);
-            match number(cell, comma, missing) {
-                Some(value) if value.abs() > LARGEST => {
-                    return Err(Error::CellNotFinite {
-                        place: Place {
-                            file: path.to_path_buf(),
-                            line,
-                        },
-                        column: name.clone(),
-                        text: cell.to_owned(),
-                    });
+        if !read.again.is_empty() {
+            let mut readings = vec![Reading::Nothing; names.len()];
+            for column in &read.again {
+                readings[*column] = Reading::Text;
+            }
+            let text = read_columns(&mut open(&path)?, &manner, &readings)?;
+            for (held, text) in read.cells.iter_mut().zip(text.cells) {
+                if let Held::Text(_) = text {
+                    *held = text;
                 }
-                Some(value) => values.push(value),
-                None => *column = None,
             }
         }
-        lines.push(line);
-    }
-    if lines.is_empty() {
-        return Err(Error::TableWithoutRows {
-            path: path.to_path_buf(),
-            row_is: "observation",
+        let cells = read.cells.into_iter().zip(names);
+        let columns = cells.filter_map(|(cells, name)| {
+            Some(Column {
+                name,
+                cells: cells.whole()?,
+            })
         });
-    }
-    let text = numbers.iter().enumerate().filter(|(_, n)| n.is_none());
-    let text: Vec<usize> = text.map(|(index, _)| index).collect();
-    let comments = std::mem::take(&mut open_file.comments);
-    let mut categories = read_categories(path, &text, missing)?.into_iter();
-    let cells = numbers.into_iter().map(|numbers| match numbers {
-        Some(numbers) => Cells::Numbers(numbers),
-        None => Cells::Categories(categories.next().unwrap_or_default()),
-    });
-    let columns = columns.iter().zip(cells);
-    Ok(Data {
-        path: path.to_path_buf(),
-        table: Table {
-            columns: columns
-                .filter(|(name, _)| !name.is_empty())
-                .map(|(name, cells)| Column {
-                    name: name.clone(),
-                    cells,
-                })
-                .collect(),
-        },
-        comments,
-        lines,
-        left_out,
-    })
-}
-
-/// Reads again the columns that turned out to hold text.
-fn read_categories(
-    path: &Path,
-    columns: &[usize],
-    missing: &[String],
-) -> Result<Vec<Categories>, Error> {
-    if columns.is_empty() {
-        return Ok(Vec::new());
-    }
-    let mut found = vec![LevelCodes::default(); columns.len()];
-    let mut open_file = open(path)?;
-    let mut record = csv::StringRecord::new();
-    while next_row(&mut open_file, &mut record)? {
-        if !counts(&open_file.columns, &record) {
-            continue;
-        }
-        for (levels, column) in found.iter_mut().zip(columns) {
-            let cell = plain_cell(record.get(*column).unwrap_or_default());
-            levels.push(Some(cell).filter(|cell| !is_missing(cell, missing)));
-        }
-    }
-    Ok(found.into_iter().map(LevelCodes::sorted).collect())
-}
-
-/// Whether a cell is blank or one of the words that stand for a missing value.
-fn is_missing(cell: &str, words: &[String]) -> bool {
-    cell.is_empty() || words.iter().any(|word| word == cell)
-}
-
-/// * `comma`: whether a comma may be the decimal mark
-fn number(cell: &str, comma: bool, missing: &[String]) -> Option<f64> {
-    if is_missing(cell, missing) {
-        return Some(f64::NAN);
-    }
-    if let Ok(number) = cell.parse() {
-        return Some(number);
-    }
-    match comma && cell.matches(',').count() == 1 {
-        true => cell.replace(',', ".").parse().ok(),
-        false => None,
+        Ok(Data {
+            path,
+            table: Table {
+                columns: columns.collect(),
+            },
+            comments: self.open.comments,
+            lines: read.lines,
+            left_out: read.left_out,
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use windfall_statistics::table::Cells;
 
     fn read(text: &str) -> Result<Data, Error> {
         let folder = tempfile::tempdir().unwrap();
@@ -231,10 +220,10 @@ mod tests {
     fn closed_form_numbers_categories_and_missing_cells() {
         let data = read("# one\n#two\n\nk;variety;n\n1,5;Gala;1\nNA;;2\n2.5;Fuji;x\n").unwrap();
         assert_eq!(data.comments, ["one", "two"]);
-        assert_eq!(data.lines, [5, 6, 7]);
+        assert!(data.lines.iter().eq([5, 6, 7]));
         let numbers = data.table.numbers("k").unwrap();
-        assert_eq!((numbers[0], numbers[2]), (1.5, 2.5));
-        assert!(numbers[1].is_nan());
+        assert_eq!((numbers.at(0), numbers.at(2)), (1.5, 2.5));
+        assert!(numbers.at(1).is_nan());
         match &data.table.column("variety").unwrap().cells {
             Cells::Categories(found) => {
                 assert_eq!(found.levels, ["Fuji", "Gala"]);

@@ -14,7 +14,7 @@ mod lvm_lines;
 mod measurements;
 mod midnight;
 pub(crate) mod missing;
-pub(crate) mod number;
+pub mod number;
 pub mod options;
 mod power;
 pub(crate) mod read;

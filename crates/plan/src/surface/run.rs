@@ -15,7 +15,7 @@ use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::number;
-use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
+use windfall_statistics::model::model_rows::rows_with_all;
 use windfall_statistics::surface::analysis::{Surface, fit_surface};
 use windfall_statistics::surface::canonical::{Canonical, Shape, canonical};
 use windfall_statistics::surface::coding::CodedFactors;
@@ -89,8 +89,7 @@ fn read_runs(request: &SurfacePlanRequest) -> Result<(Data, CodedFactors, Vec<St
         );
         return Err(unusable("TABLE", problem));
     }
-    data.table = chosen_rows(&data.table, &kept).into_owned();
-    data.lines = kept.iter().map(|row| data.lines[*row]).collect();
+    data.keep(&kept);
     let coded = coded_factors(&data, &names, &request.ranges)?;
     Ok((data, coded, names))
 }
@@ -118,7 +117,7 @@ fn true_surface(
                 .table
                 .numbers(response)
                 .map_err(|error| data.told(error))?;
-            fitted(values)
+            fitted(&values.values())
         }
         (None, Some(text)) => {
             let own = stated(text, coded, terms)?;

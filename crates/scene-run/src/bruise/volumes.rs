@@ -113,7 +113,7 @@ pub fn table_of_volumes(path: &Path) -> Result<String, Error> {
             .map(|own| own[row])
             .filter(|own| !own.is_nan());
         let measured = [first[row], second[row], depth[row]];
-        let line = data.lines.get(row).copied().unwrap_or(row + 2);
+        let line = data.line(row);
         if measured.iter().any(|own| own.is_nan()) {
             cells.extend([const { String::new() }; 3]);
             rows.push(cells);
@@ -154,8 +154,8 @@ fn lengths(
 
 fn cell(cells: &Cells, row: usize) -> String {
     match cells {
-        Cells::Numbers(numbers) if numbers[row].is_nan() => String::new(),
-        Cells::Numbers(numbers) => numbers[row].to_string(),
+        Cells::Numbers(numbers) if numbers.at(row).is_nan() => String::new(),
+        Cells::Numbers(numbers) => numbers.at(row).to_string(),
         Cells::Categories(own) => {
             own.codes[row].map_or(String::new(), |code| own.levels[code].clone())
         }

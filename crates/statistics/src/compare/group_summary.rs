@@ -1,11 +1,13 @@
 //! Groups of a table's rows, and what each group's values look like.
 
-use crate::accurate_sum::{mean, standard_deviation};
-use crate::distribution::quantile::quantile;
+use crate::accurate_sum::{mean, squares_about};
+use crate::distribution::quantile::quantiles;
 use crate::distribution::tail::t_upper_quantile;
 use crate::error::Error;
 use crate::sample::check_probability;
 use crate::table::{Categories, Table};
+use std::borrow::Cow;
+use windfall_numerics::double_double::DoubleDouble;
 
 /// The values of one group of rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +56,7 @@ pub struct GroupSummary {
     pub high: f64,
     /// Smallest value.
     pub min: f64,
-    /// First quartile, as [`quantile`].
+    /// First quartile, as [`quantile`](crate::distribution::quantile::quantile).
     pub q1: f64,
     /// Median.
     pub median: f64,
@@ -73,56 +75,89 @@ pub struct GroupSummary {
 /// [`Error::UnknownColumn`]; [`Error::NotNumbers`] for the column of values.
 pub fn split_groups(table: &Table, by: &[&str], value: &str) -> Result<Groups, Error> {
     let values = table.numbers(value)?;
-    let columns: Vec<Categories> = by
+    let columns: Vec<Cow<Categories>> = by
         .iter()
-        .map(|name| Ok(table.column(name)?.cells.categories()))
+        .map(|name| Ok(table.column(name)?.cells.as_categories()))
         .collect::<Result<_, Error>>()?;
-    let mut ungrouped = Vec::new();
-    let mut keyed: Vec<(usize, usize)> = Vec::new();
-    let mut keys = vec![Some(0); values.len()];
+    let mut keys = vec![0; values.len()];
+    let mut count = 1;
     for column in &columns {
-        joined(&mut keys, column);
+        count = joined(&mut keys, count, column);
     }
-    for (row, key) in keys.into_iter().enumerate() {
-        match key {
-            Some(key) => keyed.push((key, row)),
-            None => ungrouped.push(row),
+    let mut sizes = vec![0; count];
+    for key in keys.iter().filter(|key| **key != NONE) {
+        sizes[*key as usize] += 1;
+    }
+    let group = |size: &usize| Group {
+        levels: Vec::new(),
+        rows: Vec::with_capacity(*size),
+        values: Vec::with_capacity(*size),
+        missing: 0,
+    };
+    let mut groups: Vec<Group> = sizes.iter().map(group).collect();
+    let mut ungrouped = Vec::new();
+    for ((row, key), value) in keys.iter().enumerate().zip(values.iter()) {
+        if *key == NONE {
+            ungrouped.push(row);
+            continue;
+        }
+        let own = &mut groups[*key as usize];
+        if own.values.is_empty() && own.missing == 0 {
+            let levels = columns.iter();
+            let levels = levels.filter_map(|own| own.codes[row].map(|code| &own.levels[code]));
+            own.levels = levels.cloned().collect();
+        }
+        match value.is_nan() {
+            true => own.missing += 1,
+            false => {
+                own.rows.push(row);
+                own.values.push(value);
+            }
         }
     }
-    // Rows keep their order within a group.
-    keyed.sort_unstable();
-    let groups = keyed
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|rows| group_of(rows, &columns, values))
-        .collect();
+    groups.retain(|own| own.missing + own.rows.len() > 0);
     Ok(Groups { groups, ungrouped })
 }
 
-/// Ranks of the pairs of a key and a level of another column, in their order.
-fn joined(keys: &mut [Option<usize>], column: &Categories) {
-    let pair = |(key, code): (&Option<usize>, &Option<usize>)| Some(((*key)?, (*code)?));
-    let pairs: Vec<Option<(usize, usize)>> = keys.iter().zip(&column.codes).map(pair).collect();
-    let mut known: Vec<(usize, usize)> = pairs.iter().flatten().copied().collect();
-    known.sort_unstable();
-    known.dedup();
-    for (key, pair) in keys.iter_mut().zip(pairs) {
-        *key = pair.and_then(|pair| known.binary_search(&pair).ok());
-    }
-}
+/// Key of a row that belongs to no group.
+const NONE: u32 = u32::MAX;
 
-fn group_of(keyed: &[(usize, usize)], columns: &[Categories], values: &[f64]) -> Group {
-    let first = keyed[0].1;
-    let levels = columns
-        .iter()
-        .filter_map(|own| own.codes[first].map(|code| &own.levels[code]));
-    let rows = keyed.iter().map(|(_, row)| *row);
-    let rows: Vec<usize> = rows.filter(|row| !values[*row].is_nan()).collect();
-    Group {
-        levels: levels.cloned().collect(),
-        values: rows.iter().map(|row| values[*row]).collect(),
-        missing: keyed.len() - rows.len(),
-        rows,
+/// Puts ranks of the pairs of a key and a level of another column, in their order, in the place
+/// of keys; returns how many there are.
+///
+/// * `count`: number of keys
+fn joined(keys: &mut [u32], count: usize, column: &Categories) -> usize {
+    let levels = column.levels.len();
+    let pair = |(key, code): (&u32, &Option<usize>)| match (*key, code) {
+        (NONE, _) | (_, None) => None,
+        (key, Some(code)) => Some(key as usize * levels + code),
+    };
+    let pairs = || keys.iter().zip(&column.codes).map(pair);
+    // Most pairs that could be are there, or they are found by sorting those that are.
+    let ranks: Vec<usize> = match count * levels <= 4 * keys.len() {
+        true => {
+            let mut there = vec![false; count * levels];
+            pairs().flatten().for_each(|pair| there[pair] = true);
+            let there = there.iter().enumerate().filter(|own| *own.1);
+            there.map(|own| own.0).collect()
+        }
+        false => {
+            let mut there: Vec<usize> = pairs().flatten().collect();
+            there.sort_unstable();
+            there.dedup();
+            there
+        }
+    };
+    // Where all pairs are there, each is its own rank.
+    let all = ranks.len() == count * levels;
+    for (key, code) in keys.iter_mut().zip(&column.codes) {
+        let rank = pair((key, code)).and_then(|pair| match all {
+            true => Some(pair),
+            false => ranks.binary_search(&pair).ok(),
+        });
+        *key = rank.map_or(NONE, |rank| rank as u32);
     }
+    ranks.len()
 }
 
 /// What the values of one group look like.
@@ -133,13 +168,19 @@ pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> 
     check_probability("the confidence", confidence)?;
     let values = &group.values;
     let n = values.len();
-    let mean = mean(values).value();
-    let deviation = standard_deviation(values);
+    let centre = mean(values);
+    let mean = centre.value();
+    let deviation = match n {
+        0 | 1 => f64::NAN,
+        _ => (squares_about(values, centre) / DoubleDouble::from((n - 1) as f64)).value(),
+    };
+    let deviation = deviation.sqrt();
     let error = deviation / (n as f64).sqrt();
     let reach = match n {
         0 | 1 => f64::NAN,
         _ => error * t_upper_quantile(0.5 * (1.0 - confidence), n as f64 - 1.0),
     };
+    let [min, q1, median, q3, max] = quantiles(values, [0.0, 0.25, 0.5, 0.75, 1.0]);
     Ok(GroupSummary {
         group: match &group.levels[..] {
             [] => "all".to_owned(),
@@ -154,11 +195,11 @@ pub fn summarize(group: &Group, confidence: f64) -> Result<GroupSummary, Error> 
         se: error,
         low: mean - reach,
         high: mean + reach,
-        min: quantile(values, 0.0),
-        q1: quantile(values, 0.25),
-        median: quantile(values, 0.5),
-        q3: quantile(values, 0.75),
-        max: quantile(values, 1.0),
+        min,
+        q1,
+        median,
+        q3,
+        max,
     })
 }
 
@@ -182,8 +223,14 @@ mod tests {
                     "variety",
                     text(&["red", "golden", "red", "", "red", "golden"]),
                 ),
-                column("V", Cells::Numbers(vec![0.3, 0.1, 0.3, 0.1, 0.1, 0.1])),
-                column("k", Cells::Numbers(vec![2.0, 5.0, 4.0, 7.0, f64::NAN, 5.5])),
+                column(
+                    "V",
+                    Cells::Numbers(vec![0.3, 0.1, 0.3, 0.1, 0.1, 0.1].into()),
+                ),
+                column(
+                    "k",
+                    Cells::Numbers(vec![2.0, 5.0, 4.0, 7.0, f64::NAN, 5.5].into()),
+                ),
             ],
         }
     }

@@ -9,16 +9,33 @@ pub fn median(values: &[f64]) -> f64 {
 /// (n - 1) p of them, counted from zero (type 7 of Hyndman and Fan 1996, the
 /// default of R and NumPy). NaN where there are no values.
 pub fn quantile(values: &[f64], probability: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let Some(last) = sorted.len().checked_sub(1) else {
-        return f64::NAN;
+    quantiles(values, [probability])[0]
+}
+
+/// [`quantile`] at several probabilities, in time linear in the values.
+///
+/// * `probabilities`: ascending
+pub fn quantiles<const N: usize>(values: &[f64], probabilities: [f64; N]) -> [f64; N] {
+    let Some(last) = values.len().checked_sub(1) else {
+        return [f64::NAN; N];
     };
-    let place = probability.clamp(0.0, 1.0) * last as f64;
-    let below = place.floor() as usize;
-    let above = (below + 1).min(last);
-    let share = place - below as f64;
-    sorted[below] + share * (sorted[above] - sorted[below])
+    let mut all = values.to_vec();
+    // Values before this place are in their places or below all others.
+    let mut known = 0;
+    probabilities.map(|probability| {
+        let place = probability.clamp(0.0, 1.0) * last as f64;
+        let below = place.floor() as usize;
+        let left = &mut all[known.min(below)..];
+        let at = below - known.min(below);
+        let (_, value, above) = left.select_nth_unstable_by(at, f64::total_cmp);
+        known = below;
+        let next = above
+            .iter()
+            .copied()
+            .min_by(f64::total_cmp)
+            .unwrap_or(*value);
+        *value + (place - below as f64) * (next - *value)
+    })
 }
 
 #[cfg(test)]
@@ -32,5 +49,7 @@ mod tests {
         assert_eq!(quantile(&values, 0.25), 1.75);
         assert_eq!(quantile(&values, 1.0), 4.0);
         assert!(median(&[]).is_nan());
+        let found = quantiles(&values, [0.0, 0.25, 0.25, 0.9, 1.0]);
+        assert_eq!(found, [1.0, 1.75, 1.75, 3.7, 4.0]);
     }
 }

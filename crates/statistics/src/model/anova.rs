@@ -1,9 +1,12 @@
 //! Analysis of variance of linear models.
 
 use crate::distribution::tail::f_upper;
+use crate::error::Error;
 use crate::model::model_frame::ModelFrame;
+use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::Reduced;
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::hash::{DefaultHasher, Hasher};
 
@@ -164,30 +167,27 @@ pub struct LackOfFit {
     pub pure_error: SumOfSquares,
 }
 
-/// Splits the residuals into lack of fit and pure error of rows with equal `settings`; `None`
+/// Splits the residuals into lack of fit and pure error of rows with equal settings; `None`
 /// without repeated rows. A model with a coefficient for every setting leaves no degrees of
 /// freedom for the lack of fit.
-pub fn lack_of_fit(
-    settings: &DMatrix<f64>,
+///
+/// * `x`: the settings; `columns`: those of its columns that count
+///
+/// # Errors
+/// A setting is undefined.
+///
+/// # Numerics
+/// Settings are told apart by 128 bits of a hash: with a million of them, two are taken for
+/// equal with a probability of 1e-27.
+pub fn lack_of_fit<'a>(
+    x: impl Into<ModelMatrix<'a>>,
+    columns: &[usize],
     y: &[f64],
-    residual_ss: f64,
-    residual_df: usize,
-) -> Option<LackOfFit> {
-    // Sorted by a hash, rows with equal settings stand together; a row of numbers as the key of
-    // each would need as much memory as the settings.
-    let mut keys = vec![DefaultHasher::new(); y.len()];
-    for column in settings.column_iter() {
-        for (key, value) in keys.iter_mut().zip(&column) {
-            // Zeros of both signs are one setting.
-            key.write_u64((value + 0.0).to_bits());
-        }
-    }
-    let keys = keys.iter().map(DefaultHasher::finish);
-    let mut order: Vec<(u64, usize)> = keys.zip(0..).collect();
-    order.sort_unstable();
+    (residual_ss, residual_df): (f64, usize),
+) -> Result<Option<LackOfFit>, Error> {
+    let order = repeated(&x.into(), columns)?;
     let (mut pure_ss, mut pure_df) = (0.0, 0);
-    let same = |a: usize, b: usize| settings.row(a) == settings.row(b);
-    for group in order.chunk_by(|a, b| a.0 == b.0 && same(a.1, b.1)) {
+    for group in order.chunk_by(|a, b| a.0 == b.0) {
         let group: Vec<usize> = group.iter().map(|(_, row)| *row).collect();
         let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
         pure_ss += group
@@ -197,7 +197,7 @@ pub fn lack_of_fit(
         pure_df += group.len() - 1;
     }
     if pure_df == 0 || residual_df < pure_df {
-        return None;
+        return Ok(None);
     }
     let df = residual_df - pure_df;
     let ss = if df == 0 {
@@ -205,11 +205,75 @@ pub fn lack_of_fit(
     } else {
         (residual_ss - pure_ss).max(0.0)
     };
-    Some(LackOfFit {
+    Ok(Some(LackOfFit {
         lack: row("lack of fit", ss, df, (pure_ss, pure_df)),
         pure_error: SumOfSquares {
             ss: pure_ss,
             df: pure_df as f64,
         },
-    })
+    }))
+}
+
+/// Hash of the settings of a row.
+fn key_of(x: &DMatrix<f64>, row: usize, columns: &[usize]) -> [u64; 2] {
+    let mut hasher = DefaultHasher::new();
+    for column in columns {
+        // Zeros of both signs are one setting.
+        hasher.write_u64((x[(row, *column)] + 0.0).to_bits());
+    }
+    let first = hasher.finish();
+    hasher.write_u8(0);
+    [first, hasher.finish()]
+}
+
+/// Rows in the order of their hashes, without most of those that are alone with theirs.
+fn repeated(x: &ModelMatrix, columns: &[usize]) -> Result<Vec<([u64; 2], usize)>, Error> {
+    // A part of each hash takes little memory and shows nearly all that are alone.
+    let parts = x.each_block(|_, x| {
+        let rows = 0..x.nrows();
+        rows.map(|row| key_of(x, row, columns)[0] as u32)
+            .collect::<Vec<u32>>()
+    })?;
+    let rows = twice(&parts.concat());
+    let blocks: Vec<&[usize]> = rows.chunk_by(|a, b| a / BLOCK == b / BLOCK).collect();
+    let keyed = blocks.into_par_iter().map(|rows| {
+        let start = rows[0] / BLOCK * BLOCK;
+        let x = x.block(start..(start + BLOCK).min(x.rows()))?;
+        let keyed = rows
+            .iter()
+            .map(|row| (key_of(&x, row - start, columns), *row));
+        Ok(keyed.collect::<Vec<_>>())
+    });
+    let keyed: Vec<Result<Vec<_>, Error>> = keyed.collect();
+    let keyed: Vec<Vec<_>> = keyed.into_iter().collect::<Result<_, _>>()?;
+    let mut order = keyed.concat();
+    order.sort_unstable();
+    Ok(order)
+}
+
+/// Places of numbers that occur more than once, in their order.
+fn twice(numbers: &[u32]) -> Vec<usize> {
+    let mask = (16 * numbers.len()).clamp(64, 1 << 31).next_power_of_two() - 1;
+    let mut seen = vec![0_u64; (mask + 1) / 64];
+    let mut again = Vec::new();
+    for number in numbers {
+        let place = *number as usize & mask;
+        let (word, bit) = (&mut seen[place / 64], 1 << (place % 64));
+        if *word & bit != 0 {
+            again.push(place);
+        }
+        *word |= bit;
+    }
+    again.sort_unstable();
+    again.dedup();
+    let among = |number: &u32| again.binary_search(&(*number as usize & mask)).is_ok();
+    let found = numbers.iter().copied().zip(0..);
+    let mut found: Vec<(u32, usize)> = found.filter(|(number, _)| among(number)).collect();
+    found.sort_unstable();
+    let groups = found
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|own| own.len() > 1);
+    let mut places: Vec<usize> = groups.flatten().map(|own| own.1).collect();
+    places.sort_unstable();
+    places
 }

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::model::contrast::{Contrast, ContrastMatrix, PolynomialBasis};
-use crate::model::expression::values;
+use crate::model::expression::{columns_of, values};
 use crate::model::formula::Atom;
 use crate::model::formula_syntax::{Argument, Kind, Node};
 use crate::table::{Categories, Cells, Table};
@@ -236,6 +236,16 @@ fn polynomial(
 }
 
 impl Encoding {
+    /// Columns of the table that it is made from.
+    pub(crate) fn sources(&self) -> Vec<String> {
+        match self {
+            Self::Numbers { node, .. }
+            | Self::Polynomial { node, .. }
+            | Self::Scaled { node, .. } => columns_of(node),
+            Self::Category { column, .. } => vec![column.clone()],
+        }
+    }
+
     /// Names of its columns.
     pub(crate) fn columns(&self, coding: Coding) -> Vec<String> {
         match (self, coding) {
@@ -296,23 +306,30 @@ fn in_brackets(name: &str, contrast: &ContrastMatrix) -> Vec<String> {
 
 /// Positions of the cells of a column among known levels.
 fn codes(table: &Table, column: &str, levels: &[String]) -> Result<Vec<usize>, Error> {
-    let name_of = |row: usize| match &table.column(column).map(|c| &c.cells) {
-        Ok(Cells::Categories(categories)) => categories.codes[row]
-            .map_or("", |code| &categories.levels[code])
-            .to_owned(),
-        Ok(Cells::Numbers(numbers)) => numbers[row].to_string(),
-        Err(_) => String::new(),
+    let known = |name: &str| levels.iter().position(|level| level == name);
+    let unknown = |name: &str, row: usize| Error::UnknownLevel {
+        column: column.to_owned(),
+        level: name.to_owned(),
+        row: row + 1,
+        known: levels.join(", "),
     };
-    let position = |row: usize| {
-        let name = name_of(row);
-        let known = levels.iter().position(|level| *level == name);
-        known.ok_or_else(|| Error::UnknownLevel {
-            column: column.to_owned(),
-            level: name,
-            row: row + 1,
-            known: levels.join(", "),
-        })
-    };
-    table.column(column)?;
-    (0..table.rows()).map(position).collect()
+    match &table.column(column)?.cells {
+        Cells::Categories(own) => {
+            let places = own.levels.iter().map(|name| known(name));
+            let places: Vec<Option<usize>> = places.collect();
+            let place = |(row, code): (usize, &Option<usize>)| {
+                let name = code.map_or("", |code| &own.levels[code]);
+                let place = code.map_or_else(|| known(""), |code| places[code]);
+                place.ok_or_else(|| unknown(name, row))
+            };
+            own.codes.iter().enumerate().map(place).collect()
+        }
+        Cells::Numbers(numbers) => {
+            let place = |(row, number): (usize, f64)| {
+                let name = number.to_string();
+                known(&name).ok_or_else(|| unknown(&name, row))
+            };
+            numbers.iter().enumerate().map(place).collect()
+        }
+    }
 }

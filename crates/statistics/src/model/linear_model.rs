@@ -6,6 +6,7 @@ use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
 use crate::model::anova::{AnovaRow, SumOfSquares};
 use crate::model::model_frame::ModelFrame;
+use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::{Aliased, Reduced, Solved, reduce};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -67,16 +68,16 @@ pub fn fit_linear(
 }
 
 /// As [`fit_linear`], with rows that are reduced already.
-pub fn fit_reduced(
+pub fn fit_reduced<'a>(
     frame: &ModelFrame,
-    x: &DMatrix<f64>,
+    x: impl Into<ModelMatrix<'a>>,
     y: &[f64],
     reduced: &Reduced,
     wanted: &[usize],
     confidence: f64,
 ) -> Result<LinearFit, Error> {
-    let solved = reduced.solve(wanted);
-    let (rows, count) = (x.nrows(), solved.columns.len());
+    let (x, solved) = (x.into(), reduced.solve(wanted));
+    let (rows, count) = (x.rows(), solved.columns.len());
     if rows < wanted.len() {
         return Err(Error::TooFewRows {
             rows,
@@ -93,7 +94,7 @@ pub fn fit_reduced(
     let residual_df = rows - count;
     // Exact fits leave the rounding of the data.
     let residual_ss = solved.residual.value().max(0.0);
-    let (residuals, leverages) = residuals_and_leverages(x, y, &solved);
+    let (residuals, leverages) = residuals_and_leverages(&x, y, &solved)?;
     let unscaled = &solved.inverse * solved.inverse.transpose();
     let variance = residual_ss / residual_df as f64;
     let df = residual_df as f64;
@@ -157,68 +158,58 @@ fn total(reduced: &Reduced, intercept: bool) -> f64 {
     (sum + reduced.rest).value()
 }
 
-/// Rows handled at once.
-const BLOCK: usize = 4096;
-
-fn residuals_and_leverages(x: &DMatrix<f64>, y: &[f64], solved: &Solved) -> (Vec<f64>, Vec<f64>) {
-    let rows = x.nrows();
-    let precise = rows * solved.columns.len() <= 1_000_000;
-    let starts: Vec<usize> = (0..rows).step_by(BLOCK).collect();
-    let parts: Vec<(Vec<f64>, Vec<f64>)> = starts
-        .into_par_iter()
-        .map(|start| {
-            let end = (start + BLOCK).min(rows);
-            (
-                residuals(x, y, solved, start..end, precise),
-                leverages(x, solved, start..end),
-            )
-        })
-        .collect();
-    let mut found = (Vec::with_capacity(rows), Vec::with_capacity(rows));
-    for (residuals, leverages) in parts {
-        found.0.extend(residuals);
-        found.1.extend(leverages);
-    }
-    found
-}
-
-fn residuals(
-    x: &DMatrix<f64>,
+fn residuals_and_leverages(
+    x: &ModelMatrix,
     y: &[f64],
     solved: &Solved,
-    rows: std::ops::Range<usize>,
-    precise: bool,
-) -> Vec<f64> {
+) -> Result<(Vec<f64>, Vec<f64>), Error> {
+    let precise = y.len() * solved.columns.len() <= 1_000_000;
+    let mut residuals = y.to_vec();
+    let mut leverages = vec![0.0; y.len()];
+    let parts = residuals.par_chunks_mut(BLOCK);
+    let parts = parts.zip(leverages.par_chunks_mut(BLOCK)).enumerate();
+    parts.try_for_each(|(place, (residuals, leverages))| {
+        let start = place * BLOCK;
+        let x = x.block(start..start + residuals.len())?;
+        take_off(&x, solved, precise, residuals);
+        add_leverages(&x, solved, leverages);
+        Ok::<(), Error>(())
+    })?;
+    Ok((residuals, leverages))
+}
+
+/// Takes what a model predicts off the response.
+fn take_off(x: &DMatrix<f64>, solved: &Solved, precise: bool, left: &mut [f64]) {
     let pairs = solved.columns.iter().zip(&solved.estimates);
     if precise {
-        let mut left: Vec<DoubleDouble> = y[rows.clone()].iter().map(|y| as_written(*y)).collect();
+        let mut exact: Vec<DoubleDouble> = left.iter().map(|y| as_written(*y)).collect();
         for (column, estimate) in pairs {
-            let own = &x.column(*column).data.into_slice()[rows.clone()];
-            for (left, x) in left.iter_mut().zip(own) {
+            for (left, x) in exact.iter_mut().zip(&x.column(*column)) {
                 *left -= *estimate * DoubleDouble::from(*x);
             }
         }
-        return left.into_iter().map(DoubleDouble::value).collect();
+        for (left, exact) in left.iter_mut().zip(exact) {
+            *left = exact.value();
+        }
+        return;
     }
-    let mut left = y[rows.clone()].to_vec();
     for (column, estimate) in pairs {
-        let own = &x.column(*column).data.into_slice()[rows.clone()];
+        let estimate = estimate.value();
+        let own = x.column(*column).data.into_slice();
         for (left, x) in left.iter_mut().zip(own) {
-            *left -= estimate.value() * x;
+            *left -= estimate * x;
         }
     }
-    left
 }
 
 /// Squared lengths of the rows of X R⁻¹.
-fn leverages(x: &DMatrix<f64>, solved: &Solved, rows: std::ops::Range<usize>) -> Vec<f64> {
-    let mut found = vec![0.0; rows.len()];
-    let mut row_of_q = vec![0.0; rows.len()];
+fn add_leverages(x: &DMatrix<f64>, solved: &Solved, found: &mut [f64]) {
+    let mut row_of_q = vec![0.0; found.len()];
     for step in 0..solved.columns.len() {
         row_of_q.fill(0.0);
         for (inner, column) in solved.columns[..=step].iter().enumerate() {
             let factor = solved.inverse[(inner, step)];
-            let own = &x.column(*column).data.into_slice()[rows.clone()];
+            let own = x.column(*column).data.into_slice();
             for (sum, x) in row_of_q.iter_mut().zip(own) {
                 *sum += factor * x;
             }
@@ -227,7 +218,7 @@ fn leverages(x: &DMatrix<f64>, solved: &Solved, rows: std::ops::Range<usize>) ->
             *sum += q * q;
         }
     }
-    found.iter().map(|h| h.min(1.0)).collect()
+    found.iter_mut().for_each(|h| *h = h.min(1.0));
 }
 
 /// Quantile of Student's t; NaN without degrees of freedom.
@@ -393,12 +384,10 @@ impl LinearFit {
         let total_df = rows - f64::from(u8::from(self.intercept)) - self.blocks.df;
         let total_ss = self.described();
         let press = press(&self.residuals, &self.leverages);
-        let fitted = self.fitted(y);
-        let (low, high) = fitted
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-                (l.min(*v), h.max(*v))
-            });
+        let fitted = y.iter().zip(&self.residuals).map(|(y, e)| y - e);
+        let (low, high) = fitted.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(v), h.max(v))
+        });
         let variance = self.variance();
         let log_likelihood = log_likelihood(self.residual_ss, rows);
         let parameters = count + 1.0;

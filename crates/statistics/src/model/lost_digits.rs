@@ -25,8 +25,8 @@ pub(crate) fn lost_digits<'a>(
         };
         let (column, power) = whole_power(node)?;
         let values = table.numbers(column).ok()?;
-        for (own, value) in product.iter_mut().zip(values) {
-            *own = *own * as_written(*value).powi(power);
+        for (own, value) in product.iter_mut().zip(values.iter()) {
+            *own = *own * as_written(value).powi(power);
         }
     }
     let pairs = product.iter().zip(rounded);

@@ -126,7 +126,7 @@ pub fn slope_rows(
     let extent = values
         .iter()
         .fold((f64::MAX, f64::MIN), |(low, high), own| {
-            (low.min(*own), high.max(*own))
+            (low.min(own), high.max(own))
         });
     let step = match extent.1 > extent.0 {
         true => 1e-3 * (extent.1 - extent.0),
@@ -237,7 +237,7 @@ fn grid(factors: &[Factor], held: &[(String, f64)], points: usize) -> Table {
         });
     let numbers = held.iter().map(|(name, mean)| Column {
         name: name.clone(),
-        cells: Cells::Numbers(vec![*mean; points]),
+        cells: Cells::Numbers(vec![*mean; points].into()),
     });
     Table {
         columns: categories.chain(numbers).collect(),

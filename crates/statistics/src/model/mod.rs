@@ -11,6 +11,8 @@ pub mod lost_digits;
 pub mod marginal_means;
 pub mod mean_contrasts;
 pub mod model_frame;
+pub mod model_matrix;
+pub mod model_rows;
 pub mod original_scale;
 pub mod random_terms;
 pub mod reduced;

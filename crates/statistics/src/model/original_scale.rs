@@ -3,6 +3,7 @@
 use crate::model::expression::values;
 use crate::model::formula_syntax::{Kind, Node, Operator, spelling};
 use crate::model::model_frame::chosen_rows;
+use crate::runs::Runs;
 use crate::table::Table;
 
 /// How a transformed response leads back to the column that it was made from.
@@ -34,12 +35,13 @@ impl OriginalScale {
     /// square of values of both signs does not tell their signs.
     ///
     /// * `kept`: rows of the table that were modelled
-    pub fn of(response: &Node, table: &Table, kept: &[usize]) -> Option<Self> {
+    pub fn of(response: &Node, table: &Table, kept: &Runs) -> Option<Self> {
         let scale = Self::written(response)?;
-        let table = chosen_rows(table, kept);
+        let kept: Vec<usize> = kept.iter().collect();
+        let table = chosen_rows(table, &kept);
         let transformed = values(response, &table).ok()?;
         let own = table.numbers(&scale.column).ok()?;
-        let leads_back = |(own, transformed): (&f64, &f64)| {
+        let leads_back = |(own, transformed): (f64, &f64)| {
             own.is_nan() || (scale.value(*transformed) - own).abs() <= 1e-6 * own.abs()
         };
         let mut rows = own.iter().zip(&transformed);
@@ -255,19 +257,23 @@ mod tests {
         let table = |cells: &[f64]| Table {
             columns: vec![Column {
                 name: "k".to_owned(),
-                cells: Cells::Numbers(cells.to_vec()),
+                cells: Cells::Numbers(cells.to_vec().into()),
             }],
         };
         let both = table(&[-1.0, 2.0]);
         let positive = table(&[0.5, 2.0, -1.0]);
         for text in ["k^2", "1 / k", "k^3", "(1 - k)^2"] {
             let node = parse(text).unwrap();
-            assert_eq!(OriginalScale::of(&node, &both, &[0, 1]), None, "{text}");
+            assert_eq!(
+                OriginalScale::of(&node, &both, &(0..2).collect()),
+                None,
+                "{text}"
+            );
         }
         for text in ["k^2", "1 / k", "k^3", "log(k)"] {
             let node = parse(text).unwrap();
             assert!(
-                OriginalScale::of(&node, &positive, &[0, 1]).is_some(),
+                OriginalScale::of(&node, &positive, &(0..2).collect()).is_some(),
                 "{text}"
             );
         }

@@ -5,7 +5,8 @@ use crate::mixed::predict::NewTerm;
 use crate::mixed::term::RandomTerm;
 use crate::model::contrast::Contrast;
 use crate::model::formula::{Formula, RandomPart};
-use crate::model::model_frame::{ModelFrame, model_rows, prediction_rows};
+use crate::model::model_frame::{ModelFrame, prediction_rows};
+use crate::model::model_rows::model_rows;
 use crate::table::{Cells, Table};
 
 /// A random term and how its columns came about.
@@ -85,7 +86,7 @@ fn labels(table: &Table, groups: &[String]) -> Result<Vec<String>, Error> {
     let columns: Vec<_> = columns.collect::<Result<_, _>>()?;
     let label = |row: usize| {
         let parts = columns.iter().map(|column| match &column.cells {
-            Cells::Numbers(numbers) => numbers[row].to_string(),
+            Cells::Numbers(numbers) => numbers.at(row).to_string(),
             Cells::Categories(categories) => {
                 categories.codes[row].map_or_else(String::new, |c| categories.levels[c].clone())
             }

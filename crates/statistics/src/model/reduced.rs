@@ -6,6 +6,8 @@
 //! depend on the number of threads.
 
 use crate::as_written::as_written;
+use crate::error::Error;
+use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use windfall_numerics::double_double::DoubleDouble;
@@ -14,7 +16,7 @@ use windfall_numerics::double_double::DoubleDouble;
 const ORDINARY: usize = 2_000_000;
 
 /// Rows reduced at once, beyond that.
-const BLOCK: usize = 512;
+const BLOCK_HEIGHT: usize = 512;
 
 /// Least part of a column's length that those before it must leave.
 const DEPENDENT: f64 = 1e-12;
@@ -75,9 +77,9 @@ impl Aliased {
     }
 }
 
-/// Whether a model matrix is reduced in twice the precision of doubles.
-pub fn is_ordinary(x: &DMatrix<f64>) -> bool {
-    x.nrows() * (x.ncols() + 1) * (x.ncols() + 1) <= ORDINARY
+/// Whether a model matrix of this size is reduced in twice the precision of doubles.
+pub fn is_ordinary(rows: usize, columns: usize) -> bool {
+    rows * (columns + 1) * (columns + 1) <= ORDINARY
 }
 
 /// Reduces rows to their triangle.
@@ -92,10 +94,42 @@ pub fn reduce(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
 ///
 /// * `lost`: columns with what rounding to doubles took from each row
 pub fn reduce_written(x: &DMatrix<f64>, lost: &[(usize, Vec<f64>)], y: &[f64]) -> Reduced {
-    match is_ordinary(x) {
+    match is_ordinary(x.nrows(), x.ncols()) {
         true => reduce_precisely(x, lost, y),
         false => reduce_in_blocks(x, y),
     }
+}
+
+/// [`reduce`] of a model matrix that is evaluated block by block.
+///
+/// # Errors
+/// A value is undefined, with its row among all.
+pub fn reduce_evaluated(x: &ModelMatrix, y: &[f64]) -> Result<Reduced, Error> {
+    let (rows, width) = (x.rows(), x.columns() + 1);
+    if is_ordinary(rows, x.columns()) {
+        return Ok(reduce(&*x.whole()?, y));
+    }
+    // Heights divide those of blocks, so that the triangles are those of a matrix in memory.
+    let height = height_of(width);
+    if !BLOCK.is_multiple_of(height) {
+        return Ok(reduce_in_blocks(&*x.whole()?, y));
+    }
+    let triangles = x.each_block(|own, x| {
+        let starts = own.clone().step_by(height);
+        let part = |start: usize| {
+            let end = (start + height).min(own.end);
+            triangle_of(
+                block_of(x, &y[own.clone()], start - own.start..end - own.start),
+                width,
+            )
+        };
+        starts.map(part).collect::<Vec<_>>()
+    })?;
+    Ok(joined(
+        triangles.into_iter().flatten().collect(),
+        rows,
+        width,
+    ))
 }
 
 fn reduce_precisely(x: &DMatrix<f64>, lost: &[(usize, Vec<f64>)], y: &[f64]) -> Reduced {
@@ -135,36 +169,55 @@ struct Block {
     values: Vec<f64>,
 }
 
+/// Rows that are reduced at once.
+fn height_of(width: usize) -> usize {
+    BLOCK_HEIGHT.max((4 * width).next_power_of_two())
+}
+
 fn reduce_in_blocks(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
-    let (rows, columns) = (x.nrows(), x.ncols());
-    let width = columns + 1;
-    let height = BLOCK.max(4 * width);
-    let all = x.as_slice();
+    let (rows, width) = (x.nrows(), x.ncols() + 1);
+    let height = height_of(width);
     let starts: Vec<usize> = (0..rows).step_by(height).collect();
-    let mut triangles: Vec<Vec<f64>> = starts
-        .into_par_iter()
-        .map(|start| {
-            let end = (start + height).min(rows);
-            let mut values = Vec::with_capacity((end - start) * width);
-            for column in 0..columns {
-                values.extend_from_slice(&all[column * rows + start..column * rows + end]);
-            }
-            values.extend_from_slice(&y[start..end]);
-            let block = Block {
-                rows: end - start,
-                values,
-            };
-            triangle_of(block, width)
-        })
-        .collect();
-    // Pairs are joined until one is left, always the same ones.
-    while triangles.len() > 1 {
-        triangles = triangles
-            .par_chunks(8)
-            .map(|some| triangle_of(stacked(some, width), width))
-            .collect();
+    let triangles = starts.into_par_iter().map(|start| {
+        let end = (start + height).min(rows);
+        triangle_of(block_of(x, y, start..end), width)
+    });
+    joined(triangles.collect(), rows, width)
+}
+
+/// Some rows of a matrix, and the response.
+fn block_of(x: &DMatrix<f64>, y: &[f64], rows: std::ops::Range<usize>) -> Block {
+    let (all, height) = (x.as_slice(), x.nrows());
+    let mut values = Vec::with_capacity(rows.len() * (x.ncols() + 1));
+    for column in 0..x.ncols() {
+        let start = column * height;
+        values.extend_from_slice(&all[start + rows.start..start + rows.end]);
     }
-    let whole = triangles.pop().unwrap_or_default();
+    values.extend_from_slice(&y[rows.clone()]);
+    Block {
+        rows: rows.len(),
+        values,
+    }
+}
+
+/// The triangle of some rows of a matrix, and the response.
+pub(crate) fn triangle_of_rows(x: &DMatrix<f64>, y: &[f64], rows: &[usize]) -> Vec<f64> {
+    let mut values = Vec::with_capacity(rows.len() * (x.ncols() + 1));
+    for column in x.column_iter() {
+        values.extend(rows.iter().map(|row| column[*row]));
+    }
+    values.extend(rows.iter().map(|row| y[*row]));
+    let block = Block {
+        rows: rows.len(),
+        values,
+    };
+    triangle_of(block, x.ncols() + 1)
+}
+
+/// The triangle of all rows from those of their blocks.
+pub(crate) fn joined(triangles: Vec<Vec<f64>>, rows: usize, width: usize) -> Reduced {
+    let whole = join(triangles, width);
+    let columns = width - 1;
     let value = |row: usize, column: usize| DoubleDouble::from(whole[column * width + row]);
     Reduced {
         rows,
@@ -174,6 +227,18 @@ fn reduce_in_blocks(x: &DMatrix<f64>, y: &[f64]) -> Reduced {
         response: (0..columns).map(|row| value(row, columns)).collect(),
         rest: value(columns, columns) * value(columns, columns),
     }
+}
+
+/// One triangle of several.
+pub(crate) fn join(mut triangles: Vec<Vec<f64>>, width: usize) -> Vec<f64> {
+    // Some are joined until one is left, always the same ones.
+    while triangles.len() > 1 {
+        triangles = triangles
+            .par_chunks(8)
+            .map(|some| triangle_of(stacked(some, width), width))
+            .collect();
+    }
+    triangles.pop().unwrap_or_else(|| vec![0.0; width * width])
 }
 
 fn stacked(triangles: &[Vec<f64>], width: usize) -> Block {

@@ -1,7 +1,9 @@
 //! How well a model predicts rows that it was not fitted to.
 
+use crate::error::Error;
 use crate::model::model_frame::ModelFrame;
-use crate::model::reduced::reduce;
+use crate::model::model_matrix::ModelMatrix;
+use crate::model::reduced::{Reduced, Solved, is_ordinary, join, joined, reduce, triangle_of_rows};
 use crate::model::selection::{SelectionOptions, select};
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
@@ -31,6 +33,9 @@ pub struct Parts<'a> {
     pub units: Option<&'a [usize]>,
 }
 
+/// Most parts whose rows are reduced once for all divisions.
+const MOST_PARTS: usize = 64;
+
 /// Divides the rows into parts by chance and predicts each part from the others.
 ///
 /// * `terms`: terms of the model, all that may be selected from
@@ -38,62 +43,147 @@ pub struct Parts<'a> {
 ///   choosing costs
 ///
 /// `None` where some division leaves a column without an estimate.
-pub fn cross_validate(
+///
+/// # Errors
+/// A value of the model matrix is undefined.
+pub fn cross_validate<'a>(
     frame: &ModelFrame,
-    x: &DMatrix<f64>,
+    x: impl Into<ModelMatrix<'a>>,
     y: &[f64],
     terms: &[usize],
     selection: Option<&SelectionOptions>,
     parts: Parts,
-) -> Option<CrossValidation> {
-    let rows = y.len();
+) -> Result<Option<CrossValidation>, Error> {
+    let (x, rows) = (x.into(), y.len());
     let count = match parts.units {
         Some(units) => units.iter().max().map_or(0, |last| last + 1),
         None => rows,
     };
     let folds = parts.folds.clamp(2, count.max(2));
-    let mut order: Vec<usize> = (0..count).collect();
-    shuffle(&mut order, parts.seed);
-    let mut part_of_unit = vec![0; count];
-    for (place, unit) in order.iter().enumerate() {
-        part_of_unit[*unit] = place % folds;
-    }
-    let part = |row: usize| part_of_unit[parts.units.map_or(row, |units| units[row])];
-    let (mut error, mut total) = (0.0, 0.0);
-    for fold in 0..folds {
-        let (left_out, kept): (Vec<usize>, Vec<usize>) =
-            (0..rows).partition(|row| part(*row) == fold);
-        let train_x = x.select_rows(&kept);
-        let train_y: Vec<f64> = kept.iter().map(|row| y[*row]).collect();
-        let reduced = reduce(&train_x, &train_y);
+    let part_of_unit = parts_of(count, folds, parts.seed);
+    let part = |row: usize| part_of_unit[parts.units.map_or(row, |units| units[row])] as usize;
+    let solved = |reduced: &Reduced| {
         let chosen = match selection {
-            Some(options) => select(frame, &reduced, options).terms,
+            Some(options) => select(frame, reduced, options).terms,
             None => terms.to_vec(),
         };
         let base = frame.intercept.then_some(0);
         let columns = chosen.iter().flat_map(|t| frame.terms[*t].columns.clone());
         let columns: Vec<usize> = base.into_iter().chain(columns).collect();
         let solved = reduced.solve(&columns);
-        if !solved.aliased.is_empty() {
-            return None;
-        }
-        let mean = train_y.iter().sum::<f64>() / train_y.len() as f64;
-        for row in left_out {
-            let pairs = solved.columns.iter().zip(&solved.estimates);
-            let predicted: f64 = pairs.map(|(c, b)| x[(row, *c)] * b.value()).sum();
-            error += (y[row] - predicted).powi(2);
-            total += (y[row] - mean).powi(2);
-        }
-    }
-    Some(CrossValidation {
+        solved.aliased.is_empty().then_some(solved)
+    };
+    let at_once = !is_ordinary(rows, x.columns()) && folds <= MOST_PARTS;
+    let found = match at_once {
+        true => from_parts(&x, y, folds, &part, &solved)?,
+        false => from_rows(&*x.whole()?, y, folds, &part, &solved),
+    };
+    Ok(found.map(|(error, total)| CrossValidation {
         folds,
         rms: (error / rows as f64).sqrt(),
         r2: 1.0 - error / total,
-    })
+    }))
+}
+
+/// Part of each unit.
+fn parts_of(count: usize, folds: usize, seed: u64) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    shuffle(&mut order, seed);
+    let mut part_of_unit = vec![0; count];
+    for (place, unit) in order.iter().enumerate() {
+        part_of_unit[*unit as usize] = (place % folds) as u32;
+    }
+    part_of_unit
+}
+
+/// Squared errors of predictions, and squared distances from the mean of the fitted rows.
+type Squares = (f64, f64);
+
+/// Each division reduced by itself.
+fn from_rows(
+    x: &DMatrix<f64>,
+    y: &[f64],
+    folds: usize,
+    part: &dyn Fn(usize) -> usize,
+    solved: &dyn Fn(&Reduced) -> Option<Solved>,
+) -> Option<Squares> {
+    let (mut error, mut total) = (0.0, 0.0);
+    for fold in 0..folds {
+        let (left_out, kept): (Vec<usize>, Vec<usize>) =
+            (0..y.len()).partition(|row| part(*row) == fold);
+        let train_x = x.select_rows(&kept);
+        let train_y: Vec<f64> = kept.iter().map(|row| y[*row]).collect();
+        let solved = solved(&reduce(&train_x, &train_y))?;
+        let mean = train_y.iter().sum::<f64>() / train_y.len() as f64;
+        for row in left_out {
+            error += (y[row] - predicted(x, row, &solved)).powi(2);
+            total += (y[row] - mean).powi(2);
+        }
+    }
+    Some((error, total))
+}
+
+fn predicted(x: &DMatrix<f64>, row: usize, solved: &Solved) -> f64 {
+    let pairs = solved.columns.iter().zip(&solved.estimates);
+    pairs.map(|(c, b)| x[(row, *c)] * b.value()).sum()
+}
+
+/// Rows of each part reduced once: the triangle of all but one follows from those of the parts.
+fn from_parts(
+    x: &ModelMatrix,
+    y: &[f64],
+    folds: usize,
+    part: &(dyn Fn(usize) -> usize + Sync),
+    solved: &dyn Fn(&Reduced) -> Option<Solved>,
+) -> Result<Option<Squares>, Error> {
+    let width = x.columns() + 1;
+    let blocks = x.each_block(|own, x| {
+        let mut rows = vec![Vec::new(); folds];
+        for row in own.clone() {
+            rows[part(row)].push(row - own.start);
+        }
+        let y = &y[own];
+        let triangles = rows.iter().map(|rows| triangle_of_rows(x, y, rows));
+        triangles.collect::<Vec<_>>()
+    })?;
+    let mut by_part = vec![Vec::new(); folds];
+    for block in blocks {
+        for (all, own) in by_part.iter_mut().zip(block) {
+            all.push(own);
+        }
+    }
+    let by_part: Vec<Vec<f64>> = by_part.into_iter().map(|own| join(own, width)).collect();
+    let (mut counts, mut sums) = (vec![0; folds], vec![0.0; folds]);
+    for (row, y) in y.iter().enumerate() {
+        counts[part(row)] += 1;
+        sums[part(row)] += y;
+    }
+    let mut fits = Vec::with_capacity(folds);
+    for fold in 0..folds {
+        let others = (0..folds).filter(|other| *other != fold);
+        let triangles = others.clone().map(|other| by_part[other].clone());
+        let rows = y.len() - counts[fold];
+        let Some(solved) = solved(&joined(triangles.collect(), rows, width)) else {
+            return Ok(None);
+        };
+        let sum: f64 = others.map(|other| sums[other]).sum();
+        fits.push((solved, sum / rows as f64));
+    }
+    let squares = x.each_block(|own, x| {
+        let (mut error, mut total) = (0.0, 0.0);
+        for row in own.clone() {
+            let (solved, mean) = &fits[part(row)];
+            error += (y[row] - predicted(x, row - own.start, solved)).powi(2);
+            total += (y[row] - mean).powi(2);
+        }
+        (error, total)
+    })?;
+    let added = |(error, total): Squares, own: Squares| (error + own.0, total + own.1);
+    Ok(Some(squares.into_iter().fold((0.0, 0.0), added)))
 }
 
 /// Fisher and Yates' shuffle.
-fn shuffle(order: &mut [usize], seed: u64) {
+fn shuffle(order: &mut [u32], seed: u64) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     for last in (1..order.len()).rev() {
         // A product with a 32-bit number: uniform to 1 in 4e9.

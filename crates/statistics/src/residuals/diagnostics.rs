@@ -1,10 +1,13 @@
 //! Rows and columns that a linear model hangs on.
 
 use crate::coefficient::Coefficient;
+use crate::error::Error;
 use crate::model::linear_model::{LinearFit, coefficient, student_quantile};
 use crate::model::model_frame::ModelFrame;
+use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use nalgebra::DMatrix;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// What a row does to a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -29,28 +32,83 @@ pub struct RowInfluence {
     pub dffits: f64,
 }
 
+/// Influence of the rows of a fit, calculated where it is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Influence<'a> {
+    observed: Cow<'a, [f64]>,
+    residuals: Cow<'a, [f64]>,
+    leverages: Cow<'a, [f64]>,
+    variance: f64,
+    df: f64,
+    count: f64,
+}
+
 /// Influence of each row; `y` is the response.
-pub fn influence(fit: &LinearFit, y: &[f64]) -> Vec<RowInfluence> {
-    let (variance, df) = (fit.variance(), fit.residual_df as f64);
-    let count = fit.columns.len() as f64;
-    let rows = fit.residuals.iter().zip(&fit.leverages).zip(y);
-    rows.map(|((residual, leverage), observed)| {
-        let left = 1.0 - leverage;
-        let standardised = residual / (variance * left).sqrt();
-        let without = (variance * df - residual * residual / left) / (df - 1.0);
+pub fn influence<'a>(fit: &'a LinearFit, y: &'a [f64]) -> Influence<'a> {
+    Influence {
+        observed: Cow::Borrowed(y),
+        residuals: Cow::Borrowed(&fit.residuals),
+        leverages: Cow::Borrowed(&fit.leverages),
+        variance: fit.variance(),
+        df: fit.residual_df as f64,
+        count: fit.columns.len() as f64,
+    }
+}
+
+impl Influence<'_> {
+    /// The same of a fit and a response that are needed no longer.
+    pub fn of(fit: LinearFit, y: Vec<f64>) -> Influence<'static> {
+        let (variance, df) = (fit.variance(), fit.residual_df as f64);
+        Influence {
+            observed: Cow::Owned(y),
+            count: fit.columns.len() as f64,
+            residuals: Cow::Owned(fit.residuals),
+            leverages: Cow::Owned(fit.leverages),
+            variance,
+            df,
+        }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.observed.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.observed.is_empty()
+    }
+
+    /// The rows in their order.
+    pub fn iter(&self) -> impl Iterator<Item = RowInfluence> {
+        (0..self.len()).map(|row| self.row(row))
+    }
+
+    /// Rows, from 0, of which something holds.
+    pub fn places(&self, chosen: fn(&RowInfluence) -> bool) -> Vec<usize> {
+        (0..self.len())
+            .filter(|row| chosen(&self.row(*row)))
+            .collect()
+    }
+
+    #[inline]
+    fn row(&self, row: usize) -> RowInfluence {
+        let (residual, leverage) = (self.residuals[row], self.leverages[row]);
+        let (observed, left) = (self.observed[row], 1.0 - leverage);
+        let standardised = residual / (self.variance * left).sqrt();
+        let without = (self.variance * self.df - residual * residual / left) / (self.df - 1.0);
         let studentised = residual / (without * left).sqrt();
         RowInfluence {
-            observed: *observed,
+            observed,
             fitted: observed - residual,
-            residual: *residual,
-            leverage: *leverage,
+            residual,
+            leverage,
             standardised,
             studentised,
-            cook: standardised * standardised * leverage / left / count,
+            cook: standardised * standardised * leverage / left / self.count,
             dffits: studentised * (leverage / left).sqrt(),
         }
-    })
-    .collect()
+    }
 }
 
 /// Variance inflation of a term.
@@ -110,38 +168,42 @@ pub fn inflation(frame: &ModelFrame, fit: &LinearFit) -> Vec<Inflation> {
 
 /// Coefficients with standard errors that hold for unequal variances: HC3
 /// (MacKinnon & White 1985, J. Econometrics 29, 305-325).
-pub fn robust_coefficients(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Coefficient> {
-    let covariance = robust_covariance(fit, x);
+///
+/// * `covariance`: [`robust_covariance`]
+pub fn robust_coefficients(fit: &LinearFit, covariance: &[Vec<f64>]) -> Vec<Coefficient> {
     let df = fit.residual_df as f64;
     let quantile = student_quantile(0.5 + 0.5 * fit.confidence, df);
     let pairs = fit.coefficients.iter().enumerate();
     pairs
         .map(|(place, own)| {
-            let se = covariance[(place, place)].sqrt();
+            let se = covariance[place][place].sqrt();
             coefficient(&own.name, own.estimate, se, df, quantile)
         })
         .collect()
 }
 
 /// Rows of the HC3 covariance of the estimates; `x` is the model matrix.
-pub fn robust_covariance_rows(fit: &LinearFit, x: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    let matrix = robust_covariance(fit, x);
-    let rows = matrix.row_iter();
-    rows.map(|row| row.iter().copied().collect()).collect()
-}
-
-fn robust_covariance(fit: &LinearFit, x: &DMatrix<f64>) -> DMatrix<f64> {
+///
+/// # Errors
+/// A value of the model matrix is undefined.
+pub fn robust_covariance(fit: &LinearFit, x: &ModelMatrix) -> Result<Vec<Vec<f64>>, Error> {
     let count = fit.columns.len();
     let mut middle = DMatrix::zeros(count, count);
-    for (row, (residual, leverage)) in fit.residuals.iter().zip(&fit.leverages).enumerate() {
-        let weight = (residual / (1.0 - leverage)).powi(2);
-        for a in 0..count {
-            let value = weight * x[(row, fit.columns[a])];
-            for b in 0..=a {
-                middle[(a, b)] += value * x[(row, fit.columns[b])];
+    for start in (0..x.rows()).step_by(BLOCK) {
+        let x = x.block(start..(start + BLOCK).min(x.rows()))?;
+        let rows = fit.residuals.iter().zip(&fit.leverages).skip(start);
+        for (row, (residual, leverage)) in rows.take(x.nrows()).enumerate() {
+            let weight = (residual / (1.0 - leverage)).powi(2);
+            for a in 0..count {
+                let value = weight * x[(row, fit.columns[a])];
+                for b in 0..=a {
+                    middle[(a, b)] += value * x[(row, fit.columns[b])];
+                }
             }
         }
     }
     middle.fill_upper_triangle_with_lower_triangle();
-    &fit.unscaled_covariance * middle * &fit.unscaled_covariance
+    let matrix = &fit.unscaled_covariance * middle * &fit.unscaled_covariance;
+    let rows = matrix.row_iter();
+    Ok(rows.map(|row| row.iter().copied().collect()).collect())
 }

@@ -303,10 +303,7 @@ pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> 
             None => code(row).map_or(0.0, |code| code as f64),
         }
     });
-    lack_of_fit(
-        &settings,
-        y,
-        surface.fit.residual_ss,
-        surface.fit.residual_df,
-    )
+    let columns: Vec<usize> = (0..settings.ncols()).collect();
+    let left = (surface.fit.residual_ss, surface.fit.residual_df);
+    lack_of_fit(&settings, &columns, y, left).ok().flatten()
 }

@@ -8,6 +8,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::Data;
 use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
+use windfall_statistics::numbers::Numbers;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,16 +67,21 @@ pub struct AgreementOutcome {
 /// # Errors
 /// A column is missing or holds text, or no row has both values.
 pub fn agreement(data: &Data, request: &AgreementRequest) -> Result<AgreementOutcome, Error> {
-    let column = |name: &str| data.table.numbers(name).map_err(|error| data.told(error));
+    let column = |name: &str| {
+        let numbers = data.table.numbers(name);
+        numbers
+            .map(Numbers::values)
+            .map_err(|error| data.told(error))
+    };
     let (measured, predicted) = (column(&request.measured)?, column(&request.predicted)?);
     let whole = |row: &usize| !measured[*row].is_nan() && !predicted[*row].is_nan();
     let (kept, left_out): (Vec<usize>, Vec<usize>) = (0..measured.len()).partition(whole);
     let of = |values: &[f64]| -> Vec<f64> { kept.iter().map(|row| values[*row]).collect() };
-    let found = goodness_index(&of(measured), &of(predicted), request.parameters)
+    let found = goodness_index(&of(&measured), &of(&predicted), request.parameters)
         .map_err(statistics_error)?;
     let mut findings: Vec<FindingOutcome> = data.left_out_finding().into_iter().collect();
     if !left_out.is_empty() {
-        let lines: Vec<usize> = left_out.iter().map(|row| data.lines[*row]).collect();
+        let lines: Vec<usize> = left_out.iter().map(|row| data.line(*row)).collect();
         findings.push(finding(
             "missing",
             format!("a value is missing in {}, left out", lines_text(&lines)),

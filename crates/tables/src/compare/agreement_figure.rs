@@ -10,6 +10,7 @@ use windfall_files::table::data::Data;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::column_title::column_title;
 use windfall_files::write_file::check_outputs;
+use windfall_statistics::numbers::Numbers;
 
 /// Size of a panel; px.
 const SIZE: (f64, f64) = (280.0, 230.0);
@@ -27,7 +28,12 @@ pub fn draw_agreement(
     request: &AgreementRequest,
 ) -> Result<(), Error> {
     check_outputs([Some(folder.directory.as_path())])?;
-    let column = |name: &str| data.table.numbers(name).map_err(|error| data.told(error));
+    let column = |name: &str| {
+        let numbers = data.table.numbers(name);
+        numbers
+            .map(Numbers::values)
+            .map_err(|error| data.told(error))
+    };
     let (measured, predicted) = (column(&request.measured)?, column(&request.predicted)?);
     let whole = |row: &usize| !measured[*row].is_nan() && !predicted[*row].is_nan();
     let rows: Vec<usize> = (0..measured.len()).filter(whole).collect();
@@ -46,7 +52,7 @@ pub fn draw_agreement(
         let dots = Series::new("", Style::Dots, dots.collect()).coloured(0);
         let mut panel = Panel::new((&m, &m_unit), (y, &p_unit), vec![series, dots]);
         let marks = named.iter().map(|row| Mark {
-            label: data.lines[*row].to_string(),
+            label: data.line(*row).to_string(),
             at: (measured[*row], value(*row)),
             side: match difference(*row) < 0.0 {
                 true => Side::BelowRight,
@@ -82,7 +88,7 @@ pub fn draw_agreement(
     });
     let rows = shown.iter().map(|row| {
         let numbers = [measured[*row], predicted[*row], difference(*row)];
-        let line = data.lines[*row].to_string();
+        let line = data.line(*row).to_string();
         std::iter::once(line)
             .chain(numbers.map(|own| own.to_string()))
             .collect()

@@ -29,7 +29,8 @@ pub(crate) fn draw_comparison(
     specimen: Option<&str>,
     outcome: &CompareOutcome,
 ) -> Result<(), Error> {
-    let column = specimen.or_else(|| specimen_column(data));
+    let names = data.names();
+    let column = specimen.or_else(|| specimen_column(&names));
     let specimens = column.map(|column| Specimens::of(data, groups, column));
     let specimens = specimens.transpose()?;
     let plotted = groups.groups.iter().zip(&outcome.groups).enumerate();
@@ -135,7 +136,7 @@ fn plotted_group(
 ) -> PlottedGroup {
     let points = group.rows.iter().zip(&group.values);
     let points = points.map(|(row, value)| GroupPoint {
-        line: data.lines[*row],
+        line: data.line(*row),
         value: *value,
         specimen: specimens.and_then(|own| own.of_row[*row]),
     });

@@ -5,6 +5,7 @@ use crate::rows::{GroupLoss, RowCount, lines_text};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_statistics::compare::group_summary::{Group, GroupSummary, Groups, summarize};
+use windfall_statistics::runs::Runs;
 
 /// Groups described.
 pub(crate) fn summaries(groups: &[Group], confidence: f64) -> Result<Vec<GroupSummary>, Error> {
@@ -47,7 +48,7 @@ pub(crate) fn missing_findings(
     groups: &Groups,
     value: &str,
     by: &[String],
-    lines: &[usize],
+    lines: &Runs,
 ) -> Vec<FindingOutcome> {
     let mut findings = Vec::new();
     let missing: usize = groups.groups.iter().map(|group| group.missing).sum();
@@ -59,7 +60,11 @@ pub(crate) fn missing_findings(
         ));
     }
     if !groups.ungrouped.is_empty() {
-        let own: Vec<usize> = groups.ungrouped.iter().map(|row| lines[*row]).collect();
+        let own: Vec<usize> = groups
+            .ungrouped
+            .iter()
+            .filter_map(|row| lines.get(*row))
+            .collect();
         findings.push(finding(
             "ungrouped",
             format!(

@@ -16,7 +16,7 @@ use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::Data;
+use windfall_files::table::data::{Data, DataFile, Wanted, open_data};
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::accurate_sum::mean;
 use windfall_statistics::compare::compact_letters::compact_letters;
@@ -85,7 +85,9 @@ pub struct CompareRequest {
 pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error> {
     check_confidence(request.confidence)?;
     check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
-    let data = request.reading.read(&request.table)?;
+    let file = open_data(&request.table)?;
+    let wanted = wanted(request, &file);
+    let data = request.reading.read_some(file, wanted)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
     let mut groups =
         split_groups(&data.table, &by, &request.value).map_err(|error| data.told(error))?;
@@ -142,6 +144,23 @@ pub fn compare_groups(request: &CompareRequest) -> Result<CompareOutcome, Error>
         draw_comparison(folder, &data, &groups, specimen, &outcome)?;
     }
     Ok(outcome)
+}
+
+/// Columns that a comparison needs.
+fn wanted(request: &CompareRequest, file: &DataFile) -> Wanted {
+    let specimens = request.paired.iter().chain(&request.specimen);
+    let told = specimen_column(&file.names()).map(str::to_owned);
+    let value = std::iter::once(&request.value);
+    Wanted {
+        named: value
+            .chain(&request.by)
+            .chain(specimens)
+            .cloned()
+            .chain(told)
+            .collect(),
+        all: request.figures.is_some(),
+        ..Wanted::default()
+    }
 }
 
 fn drop_empty(groups: &mut Groups) -> Option<FindingOutcome> {
@@ -305,7 +324,8 @@ fn partner_finding(means: &[Vec<(String, f64)>], column: &str) -> Option<Finding
 
 /// Rows that look like repeats of one specimen.
 fn repeated_finding(data: &Data, groups: &Groups) -> Result<Option<FindingOutcome>, Error> {
-    let Some(name) = specimen_column(data) else {
+    let names = data.names();
+    let Some(name) = specimen_column(&names) else {
         return Ok(None);
     };
     let means = specimen_means(data, groups, name)?;

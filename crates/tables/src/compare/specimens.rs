@@ -10,9 +10,9 @@ use windfall_statistics::table::Cells;
 const SPECIMEN_COLUMNS: [&str; 5] = ["specimen", "fruit", "sample", "specimen_id", "fruit_id"];
 
 /// The column whose name says that rows may repeat a specimen, if there is one.
-pub(crate) fn specimen_column(data: &Data) -> Option<&str> {
+pub(crate) fn specimen_column(names: &[String]) -> Option<&str> {
     let known = |name: &str| SPECIMEN_COLUMNS.contains(&name.to_lowercase().as_str());
-    let mut names = data.table.columns.iter().map(|column| column.name.as_str());
+    let mut names = names.iter().map(String::as_str);
     names.find(|name| known(name))
 }
 
@@ -49,7 +49,7 @@ pub(crate) fn specimen_names(data: &Data, column: &str) -> Result<Vec<Option<Str
     Ok(match &column.cells {
         Cells::Numbers(numbers) => numbers
             .iter()
-            .map(|number| (!number.is_nan()).then(|| number.to_string()))
+            .map(|number: f64| (!number.is_nan()).then(|| number.to_string()))
             .collect(),
         Cells::Categories(categories) => categories
             .codes

@@ -13,7 +13,7 @@ use windfall_draw::files::{FigureFolder, write_paintings};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::Data;
+use windfall_files::table::data::{Data, Wanted, open_data};
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::compare::group_summary::{GroupSummary, split_groups};
 use windfall_statistics::table::Cells;
@@ -80,7 +80,13 @@ pub struct ValueSummary {
 pub fn summarize_table(request: &SummaryRequest) -> Result<SummaryOutcome, Error> {
     check_confidence(request.confidence)?;
     check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
-    let data = request.reading.read(&request.table)?;
+    let wanted = Wanted {
+        named: [&request.by[..], &request.values].concat(),
+        numbers: request.values.is_empty(),
+        all: request.figures.is_some(),
+    };
+    let file = open_data(&request.table)?;
+    let data = request.reading.read_some(file, wanted)?;
     let by: Vec<&str> = request.by.iter().map(String::as_str).collect();
     let mut outcome = SummaryOutcome {
         by: request.by.clone(),

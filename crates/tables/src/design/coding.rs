@@ -5,6 +5,7 @@ use crate::design::file::read_coding;
 use windfall_design::kind::Factor;
 use windfall_files::error::Error;
 use windfall_files::table::data::Data;
+use windfall_statistics::numbers::Numbers;
 use windfall_statistics::surface::coding::{
     CodedFactors, FactorCoding, Recognised, code_by_levels,
 };
@@ -59,13 +60,14 @@ pub fn coding_of_design(
             half: factor.half,
         };
         let exact = data.table.numbers(&format!("{name}{CODED}")).ok();
-        let found = factor_values(factor, settings, exact);
+        let exact = exact.map(Numbers::values);
+        let found = factor_values(factor, settings, exact.as_deref());
         coded.values[place] = found.values;
         if found.rounded > SAME {
             rounded.push((name.clone(), found.rounded));
         }
         if !found.changed.is_empty() {
-            let lines = found.changed.iter().map(|row| data.lines[*row]);
+            let lines = found.changed.iter().map(|row| data.line(*row));
             changed.push((name.clone(), lines.collect()));
         }
     }
@@ -132,8 +134,9 @@ mod tests {
         std::fs::write(&path, change(write_design(&design, &[]).unwrap())).unwrap();
         let data = read_data(&path).unwrap();
         assert_eq!(number_factors(&data), ["k", "e"]);
-        let column = |name: &str| data.table.numbers(name).unwrap();
-        let columns = [("k".to_owned(), column("k")), ("e".to_owned(), column("e"))];
+        let column = |name: &str| data.table.numbers(name).unwrap().values();
+        let (k, e) = (column("k"), column("e"));
+        let columns = [("k".to_owned(), &*k), ("e".to_owned(), &*e)];
         let found = coding_of_design(&data, &columns).unwrap().unwrap();
         let exact = |place: usize| design.runs.iter().map(|run| run.coded[place]).collect();
         (found, vec![exact(0), exact(1)])

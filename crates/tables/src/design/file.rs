@@ -248,14 +248,14 @@ mod tests {
         );
         for (place, name) in ["k_coded", "e_coded", "c_coded"].iter().enumerate() {
             let coded: Vec<f64> = design.runs.iter().map(|run| run.coded[place]).collect();
-            assert_eq!(data.table.numbers(name).unwrap(), coded);
+            assert_eq!(*data.table.numbers(name).unwrap().values(), coded);
         }
         let e = data.table.numbers("e").unwrap();
         for (found, run) in e.iter().zip(&design.runs) {
             assert!((found / design.factors[1].actual(run.coded[1]) - 1.0).abs() < 1e-14);
         }
         // Printed settings are those of the paper's table.
-        let mut k = data.table.numbers("k").unwrap().to_vec();
+        let mut k = data.table.numbers("k").unwrap().values().into_owned();
         k.sort_by(f64::total_cmp);
         k.dedup();
         assert_eq!(k, [0.3, 0.44, 0.65, 0.86, 1.0]);

@@ -8,7 +8,8 @@ use windfall_files::option_value::unusable;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::formula;
-use windfall_statistics::model::model_frame::{ModelFrame, model_rows, prediction_rows};
+use windfall_statistics::model::model_frame::{ModelFrame, prediction_rows};
+use windfall_statistics::model::model_rows::model_rows;
 use windfall_statistics::table::{Categories, Cells, Column, Table};
 
 /// Levels of each factor in the table that a formula is set up with.

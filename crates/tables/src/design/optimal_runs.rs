@@ -184,8 +184,8 @@ fn points_of(path: &Path, data: &Data, factors: &[Factor]) -> Result<Vec<Vec<f64
             .map_err(|error| unusable(path.display().to_string(), error.to_string()))?;
         columns.push(match &column.cells {
             Cells::Numbers(values) if factor.categories.is_empty() => match exact {
-                true => values.clone(),
-                false => values.iter().map(|value| recoded(factor, *value)).collect(),
+                true => values.values().into_owned(),
+                false => values.iter().map(|value| recoded(factor, value)).collect(),
             },
             cells => categories_of(path, data, factor, cells)?,
         });
@@ -226,7 +226,7 @@ fn categories_of(
             .ok_or_else(|| Error::ValueInvalid {
                 place: Place {
                     file: path.to_path_buf(),
-                    line: data.lines[row],
+                    line: data.line(row),
                 },
                 key: factor.name.clone(),
                 text: text.to_owned(),
@@ -238,7 +238,7 @@ fn categories_of(
     };
     (0..cells.len())
         .map(|row| match cells {
-            Cells::Numbers(values) => place(row, &values[row].to_string()),
+            Cells::Numbers(values) => place(row, &values.at(row).to_string()),
             Cells::Categories(categories) => match categories.codes[row] {
                 Some(code) => place(row, &categories.levels[code]),
                 None => Err(blank(path, data, row)),
@@ -251,7 +251,7 @@ fn blank(path: &Path, data: &Data, row: usize) -> Error {
     Error::CellBlank {
         place: Place {
             file: path.to_path_buf(),
-            line: data.lines[row],
+            line: data.line(row),
         },
         column: "of a factor".to_owned(),
     }

@@ -164,7 +164,7 @@ fn values_of(own: &Variable, table: &Table) -> Result<Vec<f64>, Error> {
     match (&own.levels, cells) {
         (None, _) => {
             let numbers = table.numbers(&own.column).map_err(Error::Statistics)?;
-            Ok(numbers.to_vec())
+            Ok(numbers.values().into_owned())
         }
         (Some(levels), cells) => {
             let own = cells.categories();
@@ -262,7 +262,7 @@ pub fn rows_at(
 
 fn column_of(own: &Variable, values: Vec<f64>) -> Column {
     let cells = match &own.levels {
-        None => Cells::Numbers(values),
+        None => Cells::Numbers(values.into()),
         // A column that is a number of the model too.
         Some(levels) if own.number => {
             let number = |value: &f64| levels.get(*value as usize)?.parse().ok();

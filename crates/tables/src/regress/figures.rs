@@ -2,26 +2,27 @@
 
 use crate::figures::diagnostics::{Arrangement, Diagnostics, diagnostics_painting};
 use crate::figures::effects::{EffectModel, effects_painting};
-use crate::regress::outcome::RowOutcome;
 use crate::regress::request::RegressRequest;
 use windfall_draw::files::{FigureFolder, write_paintings};
 use windfall_files::error::Error;
 use windfall_files::table::data::Data;
 use windfall_statistics::model::linear_model::LinearFit;
-use windfall_statistics::model::model_frame::{ModelRows, chosen_rows};
-use windfall_statistics::residuals::diagnostics::robust_covariance_rows;
+use windfall_statistics::model::model_frame::chosen_rows;
+use windfall_statistics::model::model_rows::FormulaRows;
+use windfall_statistics::residuals::diagnostics::{Influence, influence};
+use windfall_statistics::runs::Runs;
 
 /// Rows of a model with their influence, as panels show them.
 pub(crate) fn diagnostics_of(
     response: &str,
-    rows: &[RowOutcome],
+    (rows, lines): (&Influence, &Runs),
     (df, parameters): (f64, usize),
     confidence: f64,
 ) -> Diagnostics {
     Diagnostics {
         response: response.to_owned(),
-        lines: rows.iter().map(|row| row.line).collect(),
-        rows: rows.iter().map(|row| row.influence).collect(),
+        lines: lines.iter().collect(),
+        rows: rows.iter().collect(),
         df,
         parameters,
         confidence,
@@ -36,22 +37,20 @@ pub(crate) fn draw_linear(
     folder: &FigureFolder,
     request: &RegressRequest,
     data: &Data,
-    (rows, fit): (&ModelRows, &LinearFit),
-    (response, influence): (&str, &[RowOutcome]),
+    (rows, fit): (&FormulaRows, &LinearFit),
+    (response, lines, covariance): (&str, &Runs, &[Vec<f64>]),
 ) -> Result<(), Error> {
     let size = (fit.residual_df as f64, fit.columns.len());
-    let own = diagnostics_of(response, influence, size, request.confidence);
+    let influence = influence(fit, &rows.y);
+    let own = diagnostics_of(response, (&influence, lines), size, request.confidence);
     let mut paintings = vec![diagnostics_painting(
         "diagnostics",
         &own,
         Arrangement::Regression,
         Vec::new(),
     )?];
-    let covariance = match request.robust {
-        true => robust_covariance_rows(fit, &rows.x),
-        false => fit.covariance_rows(),
-    };
-    let table = chosen_rows(&data.table, &rows.kept);
+    let kept: Vec<usize> = rows.kept.iter().collect();
+    let table = chosen_rows(&data.table, &kept);
     paintings.extend(effects_painting(&EffectModel {
         response,
         frame: &rows.frame,
@@ -60,7 +59,7 @@ pub(crate) fn draw_linear(
         table: &table,
         lines: &own.lines,
         residuals: &fit.residuals,
-        estimate: &|weights| fit.estimate(weights, &covariance),
+        estimate: &|weights| fit.estimate(weights, covariance),
         confidence: request.confidence,
     })?);
     write_paintings(folder, &paintings).map(|_| ())

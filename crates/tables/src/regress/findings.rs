@@ -13,7 +13,9 @@ use windfall_statistics::model::formula_syntax::Kind;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_frame::ModelFrame;
 use windfall_statistics::model::reduced::Aliased;
-use windfall_statistics::residuals::diagnostics::{Inflation, RowInfluence};
+use windfall_statistics::numbers::Numbers;
+use windfall_statistics::residuals::diagnostics::{Inflation, Influence, RowInfluence};
+use windfall_statistics::runs::Runs;
 use windfall_statistics::table::Table;
 
 /// Variance inflation that is reported (Montgomery, Peck & Vining, Linear Regression, §9.4.2).
@@ -62,7 +64,7 @@ pub(crate) fn extrapolated(
     let outside = |range: &RangeOutcome| {
         let beyond = |value: &f64| *value < range.low || *value > range.high;
         let column = asked.and_then(|own| own.table.numbers(&range.column).ok());
-        let predicted = column.is_some_and(|own| own.iter().any(beyond));
+        let predicted = column.is_some_and(|own| own.iter().any(|value| beyond(&value)));
         let at = held.iter().filter(|own| own.0 == range.column);
         predicted || at.map(|own| &own.1).any(beyond)
     };
@@ -88,10 +90,7 @@ pub(crate) fn extrapolated(
 }
 
 /// Rows with missing cells.
-pub(crate) fn left_out_finding(
-    left_out: &[(usize, String)],
-    lines: &[usize],
-) -> Vec<FindingOutcome> {
+pub(crate) fn left_out_finding(left_out: &[(usize, String)], lines: &Runs) -> Vec<FindingOutcome> {
     let mut columns: Vec<&str> = Vec::new();
     for (_, column) in left_out {
         if !columns.contains(&column.as_str()) {
@@ -100,7 +99,7 @@ pub(crate) fn left_out_finding(
     }
     let message = |column: &&str| {
         let own = left_out.iter().filter(|(_, name)| name == column);
-        let own: Vec<usize> = own.map(|(row, _)| lines[*row]).collect();
+        let own: Vec<usize> = own.filter_map(|(row, _)| lines.get(*row)).collect();
         let (count, what) = (
             own.len(),
             if own.len() == 1 { "row is" } else { "rows are" },
@@ -174,17 +173,20 @@ pub(crate) fn code_findings(frame: &ModelFrame, table: &Table) -> Vec<FindingOut
 }
 
 /// Largest of the numbers 1, 2, 3 … n, where values are nothing else, and several rows each.
-fn codes(values: &[f64]) -> Option<usize> {
-    let mut known: Vec<f64> = values.iter().copied().filter(|own| !own.is_nan()).collect();
-    let rows = known.len();
-    known.sort_by(f64::total_cmp);
-    known.dedup();
-    let count = known.len();
-    let in_turn = known
-        .iter()
-        .enumerate()
-        .all(|(place, own)| *own == (place + 1) as f64);
-    (in_turn && (FEWEST_CODES..=MOST_CODES).contains(&count) && rows >= 2 * count).then_some(count)
+fn codes(values: &Numbers) -> Option<usize> {
+    let mut known = [false; MOST_CODES];
+    let mut rows = 0;
+    for value in values.iter().filter(|own| !own.is_nan()) {
+        let code = value as usize;
+        if code as f64 != value || code == 0 {
+            return None;
+        }
+        *known.get_mut(code - 1)? = true;
+        rows += 1;
+    }
+    let count = known.iter().filter(|own| **own).count();
+    let in_turn = known[..count].iter().all(|own| *own);
+    (in_turn && count >= FEWEST_CODES && rows >= 2 * count).then_some(count)
 }
 
 /// A lack of fit that chance does not explain.
@@ -250,9 +252,9 @@ fn dependence(frame: &ModelFrame, aliased: &Aliased) -> String {
 /// What is weak about a fit.
 pub(crate) fn fit_findings(
     fit: &LinearFit,
-    influence: &[RowInfluence],
+    influence: &Influence,
     vif: &[Inflation],
-    lines: &[usize],
+    lines: &Runs,
     steps: &[StepOutcome],
 ) -> Vec<FindingOutcome> {
     let mut found = Vec::new();
@@ -285,13 +287,11 @@ pub(crate) fn fit_findings(
             ),
         ));
     }
-    let at = |chosen: &dyn Fn(&RowInfluence) -> bool| -> Vec<usize> {
-        let rows = influence.iter().zip(lines);
-        rows.filter(|(row, _)| chosen(row))
-            .map(|(_, line)| *line)
-            .collect()
+    let at = |chosen: fn(&RowInfluence) -> bool| -> Vec<usize> {
+        let rows = influence.places(chosen).into_iter();
+        rows.filter_map(|row| lines.get(row)).collect()
     };
-    let alone = at(&|row| row.leverage > 1.0 - 1e-9);
+    let alone = at(|row| row.leverage > 1.0 - 1e-9);
     if !alone.is_empty() && fit.residual_df > 0 {
         found.push(finding(
             "decides-alone",
@@ -301,14 +301,14 @@ pub(crate) fn fit_findings(
             ),
         ));
     }
-    let influential = at(&|row| row.cook > 1.0 && row.leverage <= 1.0 - 1e-9);
+    let influential = at(|row| row.cook > 1.0 && row.leverage <= 1.0 - 1e-9);
     if !influential.is_empty() {
         found.push(finding(
             "influential",
             format!("Cook's distance above 1 in {}", lines_text(&influential)),
         ));
     }
-    let far = at(&|row| row.studentised.abs() > 4.0);
+    let far = at(|row| row.studentised.abs() > 4.0);
     if !far.is_empty() {
         found.push(finding(
             "outlying",

@@ -38,12 +38,12 @@ use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::formula_syntax::spelling;
 use windfall_statistics::model::mean_contrasts::JointTest;
-use windfall_statistics::model::model_frame::{
-    ModelRows, chosen_rows, complete_rows, model_rows, prediction_rows,
-};
+use windfall_statistics::model::model_frame::{chosen_rows, prediction_rows};
+use windfall_statistics::model::model_rows::{ModelRows, complete_rows, model_rows};
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
 use windfall_statistics::model::reduced::{Aliased, reduce};
+use windfall_statistics::runs::Runs;
 
 struct Fitted {
     rows: ModelRows,
@@ -74,9 +74,10 @@ pub fn regress_mixed(
         path: data.path.clone(),
         table,
         comments: Vec::new(),
-        lines: kept.iter().map(|row| data.lines[*row]).collect(),
+        lines: kept.iter().map(|row| data.line(*row)).collect(),
         left_out: data.left_out,
     };
+    let runs: Runs = kept.iter().copied().collect();
     let inference = infer(request, &chosen, formula, request.contrasts)?;
     let summed = match inference.fitted.rows.frame.has_categories() {
         true => Some(infer(request, &chosen, formula, Contrast::Sum)?),
@@ -106,16 +107,16 @@ pub fn regress_mixed(
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
     findings.extend(own.chain(profile_findings));
-    let (means, not_estimable) = means(request, data, (formula, &kept), inferred)?;
+    let (means, not_estimable) = means(request, data, (formula, &runs), inferred)?;
     findings.extend(not_estimable);
-    let (asked, ranges) = (request.asked()?, ranges_of(formula, &data.table, &kept));
+    let (asked, ranges) = (request.asked()?, ranges_of(formula, &data.table, &runs));
     findings.extend(extrapolated(
         &ranges,
         &request.after.held()?,
         asked.as_ref(),
     ));
     let scale = formula.response.as_ref();
-    let scale = scale.and_then(|response| OriginalScale::of(response, &data.table, &kept));
+    let scale = scale.and_then(|response| OriginalScale::of(response, &data.table, &runs));
     let shares = variance_shares(&fitted.fit);
     let fit = &fitted.fit;
     Ok(MixedOutcome {
@@ -177,7 +178,7 @@ fn check(request: &RegressRequest) -> Result<(), Error> {
 fn means(
     request: &RegressRequest,
     data: &Data,
-    (formula, kept): (&Formula, &[usize]),
+    (formula, kept): (&Formula, &Runs),
     (fitted, uncertainty, adjusted): (&Fitted, &VarianceUncertainty, Option<&KenwardRoger>),
 ) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
     let fit = &fitted.fit;
@@ -234,11 +235,12 @@ fn draw(
         return Ok(());
     };
     let fitted = inferred.0;
+    let lines: Vec<usize> = data.lines.iter().collect();
     let terms: Vec<RandomTerm> = fitted.terms.iter().map(|own| own.term.clone()).collect();
     let mut paintings = mixed_paintings(&MixedShown {
         response,
         observed: &fitted.rows.y,
-        lines: &data.lines,
+        lines: &lines,
         terms: &terms,
         fit: &fitted.fit,
         profiles,
@@ -250,7 +252,7 @@ fn draw(
         estimated: &fitted.columns,
         aliased: &fitted.aliased,
         table: &data.table,
-        lines: &data.lines,
+        lines: &lines,
         residuals: &fitted.fit.residuals,
         estimate: &|weights| estimated(weights, inferred),
         confidence: request.confidence,
@@ -436,9 +438,9 @@ fn predictions(
     };
     let found = predict_mixed(&fitted.fit, uncertainty, &rows, request.confidence);
     let found = found.map_err(mixed)?;
-    let shown = found.iter().zip(&asked.lines);
+    let shown = found.iter().zip(asked.lines.iter());
     Ok(shown
-        .map(|(&prediction, &line)| MixedPredictionOutcome {
+        .map(|(&prediction, line)| MixedPredictionOutcome {
             line,
             prediction,
             original: original_prediction(

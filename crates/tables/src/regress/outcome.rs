@@ -1,13 +1,14 @@
 //! Fitted linear models as JSON shows them.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use windfall_files::text::columns::{Column, text_of_rows};
 use windfall_files::text::statistic::number;
 use windfall_statistics::model::expression::columns_of;
 use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::linear_model::Prediction;
 use windfall_statistics::model::original_scale::OriginalScale;
-use windfall_statistics::residuals::diagnostics::RowInfluence;
+use windfall_statistics::residuals::diagnostics::{Influence, RowInfluence};
+use windfall_statistics::runs::Runs;
 use windfall_statistics::table::Table;
 
 /// A step of a selection.
@@ -40,17 +41,14 @@ pub struct RangeOutcome {
 }
 
 /// Ranges of the numeric columns on the right side of a formula, in the rows `kept`.
-pub fn ranges_of(formula: &Formula, table: &Table, kept: &[usize]) -> Vec<RangeOutcome> {
+pub fn ranges_of(formula: &Formula, table: &Table, kept: &Runs) -> Vec<RangeOutcome> {
     let atoms = formula.atoms.iter();
     let mut names: Vec<String> = atoms.flat_map(|atom| columns_of(&atom.node)).collect();
     names.sort();
     names.dedup();
     let range = |name: String| {
         let values = table.numbers(&name).ok()?;
-        let own = kept.iter().map(|row| values[*row]);
-        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
+        let (low, high) = values.range(kept);
         Some(RangeOutcome {
             column: name,
             low,
@@ -153,9 +151,28 @@ pub(crate) fn original_cell(
     original.map_or_else(String::new, |own| of(own).to_string())
 }
 
-/// Rows with their influence and their lines in the file.
-pub fn rows_of(influence: Vec<RowInfluence>, lines: &[usize]) -> Vec<RowOutcome> {
-    let rows = influence.into_iter().zip(lines);
-    rows.map(|(influence, &line)| RowOutcome { line, influence })
-        .collect()
+/// Rows of a fit with their influence and their lines in the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RowOutcomes {
+    influence: Influence<'static>,
+    lines: Runs,
+}
+
+impl RowOutcomes {
+    /// Of as many lines as there are rows.
+    pub fn new(influence: Influence<'static>, lines: Runs) -> Self {
+        Self { influence, lines }
+    }
+
+    /// Each row.
+    pub fn iter(&self) -> impl Iterator<Item = RowOutcome> {
+        let rows = self.influence.iter().zip(self.lines.iter());
+        rows.map(|(influence, line)| RowOutcome { line, influence })
+    }
+}
+
+impl Serialize for RowOutcomes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
+    }
 }

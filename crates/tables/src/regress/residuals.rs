@@ -9,7 +9,7 @@ use windfall_files::text::statistic::{number, probability};
 use serde::Serialize;
 use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use windfall_statistics::model::linear_model::LinearFit;
-use windfall_statistics::model::model_frame::ModelRows;
+use windfall_statistics::model::model_rows::FormulaRows;
 use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox};
 use windfall_statistics::residuals::heteroscedasticity::koenker;
 use windfall_statistics::residuals::normality::{
@@ -64,7 +64,7 @@ pub struct ResidualOutcome {
 }
 
 /// Tests the residuals of a model.
-pub fn residual_tests(rows: &ModelRows, fit: &LinearFit) -> ResidualOutcome {
+pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
     let goodness = goodness_index(&rows.y, &fit.fitted(&rows.y), fit.columns.len()).ok();
     let goodness = goodness.map(|index| GoodnessOutcome {
         chi_squared: index.chi_squared,
@@ -82,7 +82,11 @@ pub fn residual_tests(rows: &ModelRows, fit: &LinearFit) -> ResidualOutcome {
     if fit.rows > MOST_ROWS || fit.residual_df == 0 {
         return outcome;
     }
-    let x = rows.x.select_columns(&fit.columns);
+    let matrix = rows.x();
+    let Ok(x) = matrix.whole() else {
+        return outcome;
+    };
+    let x = x.select_columns(&fit.columns);
     let residuals = &fit.residuals;
     let (normality, normal) = match residuals.len() <= SHAPIRO_WILK_LARGEST {
         true => ("normal (Shapiro-Wilk)", shapiro_wilk(residuals)),

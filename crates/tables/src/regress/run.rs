@@ -9,8 +9,8 @@ use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::means::run::{Model, means_of};
 use crate::regress::mixed::{MixedOutcome, regress_mixed};
 use crate::regress::outcome::{
-    PredictionOutcome, RangeOutcome, RowOutcome, StepOutcome, original_prediction, ranges_of,
-    rows_of,
+    PredictionOutcome, RangeOutcome, RowOutcome, RowOutcomes, StepOutcome, original_prediction,
+    ranges_of,
 };
 use crate::regress::request::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::regress::residuals::{ResidualOutcome, residual_findings, residual_tests};
@@ -20,9 +20,10 @@ use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_files::table::data::Data;
+use windfall_files::table::data::{Data, Wanted, open_data};
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::coefficient::Coefficient;
+use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
 use windfall_statistics::model::formula_syntax::spelling;
@@ -30,13 +31,14 @@ use windfall_statistics::model::linear_model::{
     LinearFit, Quality, WholeModel, fit_reduced, predict,
 };
 use windfall_statistics::model::mean_contrasts::joint_test;
-use windfall_statistics::model::model_frame::{ModelRows, model_rows, prediction_rows};
+use windfall_statistics::model::model_frame::prediction_rows;
+use windfall_statistics::model::model_rows::{FormulaRows, formula_rows, names_of};
 use windfall_statistics::model::original_scale::OriginalScale;
-use windfall_statistics::model::reduced::{Reduced, reduce_written};
+use windfall_statistics::model::reduced::Reduced;
 use windfall_statistics::model::selection::{Selection, select};
 use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, cross_validate};
 use windfall_statistics::residuals::diagnostics::{
-    Inflation, inflation, influence, robust_coefficients, robust_covariance_rows,
+    Inflation, Influence, inflation, influence, robust_coefficients, robust_covariance,
 };
 
 /// A fitted linear model.
@@ -85,7 +87,8 @@ pub struct RegressOutcome {
     /// Tests of the residuals.
     pub residuals: ResidualOutcome,
     /// Rows with their influence.
-    pub influence: Vec<RowOutcome>,
+    #[schema(value_type = Vec<RowOutcome>)]
+    pub influence: RowOutcomes,
     /// Predictions.
     pub predictions: Vec<PredictionOutcome>,
     /// Marginal means.
@@ -122,8 +125,8 @@ pub(crate) fn random_text(random: &str, columns: &[String]) -> String {
 pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     check(request)?;
     check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
-    let data = request.reading.read(&request.table)?;
-    let names: Vec<String> = data.table.columns.iter().map(|c| c.name.clone()).collect();
+    let file = open_data(&request.table)?;
+    let names = file.names();
     let mut text = request.formula(&names);
     for random in &request.random {
         text += &random_text(random, &names);
@@ -133,6 +136,7 @@ pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
         let problem = "the response is missing: write 'response ~ terms'";
         return Err(unusable("--formula", problem));
     }
+    let data = request.reading.read_some(file, wanted(request, &formula))?;
     match formula.random.is_empty() {
         true => {
             let outcome = regress_linear(request, &data, &formula)?;
@@ -145,15 +149,26 @@ pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
     }
 }
 
+/// Columns that a model needs.
+fn wanted(request: &RegressRequest, formula: &Formula) -> Wanted {
+    let also: Vec<String> = request.fold_by.iter().cloned().collect();
+    Wanted {
+        named: names_of(formula, &also),
+        // Questions after the model may name others.
+        all: !request.after.is_empty(),
+        ..Wanted::default()
+    }
+}
+
 fn regress_linear(
     request: &RegressRequest,
     data: &Data,
     formula: &Formula,
 ) -> Result<RegressOutcome, Error> {
     let also: Vec<String> = request.fold_by.iter().cloned().collect();
-    let rows = model_rows(formula, &data.table, request.contrasts, &also)
-        .map_err(|error| data.told(error))?;
-    let reduced = reduce_written(&rows.x, &rows.lost, &rows.y);
+    let told = |error| data.told(error);
+    let rows = formula_rows(formula, &data.table, request.contrasts, &also).map_err(told)?;
+    let reduced = rows.reduced().map_err(told)?;
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
     let selection = match &request.selection() {
         Some(options) => select(&rows.frame, &reduced, options),
@@ -165,18 +180,20 @@ fn regress_linear(
     let wanted = columns_of(&rows, &selection.terms);
     let fit = fit_reduced(
         &rows.frame,
-        &rows.x,
+        rows.x(),
         &rows.y,
         &reduced,
         &wanted,
         request.confidence,
     )
-    .map_err(|error| data.told(error))?;
-    let outcome = outcome(request, data, formula, &rows, &reduced, &selection, &fit)?;
+    .map_err(told)?;
+    let mut outcome = outcome(request, data, formula, &rows, &reduced, &selection, &fit)?;
+    let lines = data.lines.at(&rows.kept);
     if let Some(folder) = &request.figures {
-        let shown = (outcome.response.as_str(), outcome.influence.as_slice());
+        let shown = (outcome.response.as_str(), &lines, &outcome.covariance[..]);
         draw_linear(folder, request, data, (&rows, &fit), shown)?;
     }
+    outcome.influence = RowOutcomes::new(Influence::of(fit, rows.y), lines);
     Ok(outcome)
 }
 
@@ -206,7 +223,7 @@ pub(crate) fn check_part(option: &str, value: f64) -> Result<(), Error> {
 }
 
 /// Columns of some terms, with the intercept.
-fn columns_of(rows: &ModelRows, terms: &[usize]) -> Vec<usize> {
+fn columns_of(rows: &FormulaRows, terms: &[usize]) -> Vec<usize> {
     let base = rows.frame.intercept.then_some(0);
     let columns = terms
         .iter()
@@ -218,18 +235,19 @@ fn outcome(
     request: &RegressRequest,
     data: &Data,
     formula: &Formula,
-    rows: &ModelRows,
+    rows: &FormulaRows,
     reduced: &Reduced,
     selection: &Selection,
     fit: &LinearFit,
 ) -> Result<RegressOutcome, Error> {
-    let settings = rows.x.select_columns(&fit.columns);
-    let lines: Vec<usize> = rows.kept.iter().map(|row| data.lines[*row]).collect();
+    let told = |error| data.told(error);
+    let lines = data.lines.at(&rows.kept);
     let influence = influence(fit, &rows.y);
     let vif = inflation(&rows.frame, fit);
     let steps = steps_of(rows, selection);
+    let covariance = covariance_of(request, rows, fit).map_err(told)?;
     let terms = match request.robust {
-        true => robust_coefficients(fit, &rows.x),
+        true => robust_coefficients(fit, &covariance),
         false => fit.coefficients.clone(),
     };
     let validation = validated(request, data, rows, selection)?;
@@ -246,9 +264,10 @@ fn outcome(
                 .to_owned(),
         ));
     }
-    let lack_of_fit = lack_of_fit(&settings, &rows.y, fit.residual_ss, fit.residual_df);
+    let left = (fit.residual_ss, fit.residual_df);
+    let lack_of_fit = lack_of_fit(rows.x(), &fit.columns, &rows.y, left).map_err(told)?;
     findings.extend(lack_finding(lack_of_fit.as_ref()));
-    let (means, not_estimable) = means(request, data, formula, rows, fit)?;
+    let (means, not_estimable) = means(request, data, formula, rows, (fit, &covariance))?;
     findings.extend(not_estimable);
     let (asked, ranges) = (
         request.asked()?,
@@ -271,10 +290,7 @@ fn outcome(
         count: row_count(&rows.frame, &data.table, &rows.left_out),
         terms,
         robust: request.robust,
-        covariance: match request.robust {
-            true => robust_covariance_rows(fit, &rows.x),
-            false => fit.covariance_rows(),
-        },
+        covariance,
         ranges,
         quality: fit.quality(&rows.y),
         model: fit.whole(),
@@ -293,7 +309,7 @@ fn outcome(
         cross_validation: validation,
         fold_by: request.fold_by.clone(),
         residuals,
-        influence: rows_of(influence, &lines),
+        influence: RowOutcomes::default(),
         predictions: predictions(asked.as_ref(), scale.as_ref(), rows, fit)?,
         means,
         findings,
@@ -304,7 +320,7 @@ fn outcome(
 fn validated(
     request: &RegressRequest,
     data: &Data,
-    rows: &ModelRows,
+    rows: &FormulaRows,
     selection: &Selection,
 ) -> Result<Option<CrossValidation>, Error> {
     let units = units_of(request, data, rows)?;
@@ -316,29 +332,23 @@ fn validated(
         seed: request.seed,
         units: units.as_deref(),
     };
-    let (x, terms, options) = (&rows.x, &selection.terms, request.selection());
-    Ok(cross_validate(
-        &rows.frame,
-        x,
-        &rows.y,
-        terms,
-        options.as_ref(),
-        parts,
-    ))
+    let (x, terms, options) = (rows.x(), &selection.terms, request.selection());
+    let found = cross_validate(&rows.frame, x, &rows.y, terms, options.as_ref(), parts);
+    found.map_err(|error| data.told(error))
 }
 
 /// Unit of each row for cross-validation, from 0 without gaps.
 fn units_of(
     request: &RegressRequest,
     data: &Data,
-    rows: &ModelRows,
+    rows: &FormulaRows,
 ) -> Result<Option<Vec<usize>>, Error> {
     let Some(name) = &request.fold_by else {
         return Ok(None);
     };
     let column = data.table.column(name).map_err(|error| data.told(error))?;
     let codes = column.cells.categories().codes;
-    let codes: Vec<usize> = rows.kept.iter().filter_map(|row| codes[*row]).collect();
+    let codes: Vec<usize> = rows.kept.iter().filter_map(|row| codes[row]).collect();
     let mut known = codes.clone();
     known.sort_unstable();
     known.dedup();
@@ -355,22 +365,34 @@ fn variance_of(
     request: &RegressRequest,
     data: &Data,
     formula: &Formula,
-    rows: &ModelRows,
+    rows: &FormulaRows,
     reduced: &Reduced,
     selection: &Selection,
 ) -> Result<Vec<AnovaRow>, Error> {
     let (terms, kind) = (&selection.terms, request.anova);
     if kind == AnovaType::Partial && rows.frame.has_categories() {
         let also: Vec<String> = request.fold_by.iter().cloned().collect();
-        let summed = model_rows(formula, &data.table, Contrast::Sum, &also);
-        let summed = summed.map_err(|error| data.told(error))?;
-        let reduced = reduce_written(&summed.x, &summed.lost, &summed.y);
+        let told = |error| data.told(error);
+        let summed = formula_rows(formula, &data.table, Contrast::Sum, &also).map_err(told)?;
+        let reduced = summed.reduced().map_err(told)?;
         return Ok(anova(&summed.frame, &reduced, terms, kind).rows);
     }
     Ok(anova(&rows.frame, reduced, terms, kind).rows)
 }
 
-fn steps_of(rows: &ModelRows, selection: &Selection) -> Vec<StepOutcome> {
+/// Covariance of the estimates, in rows.
+fn covariance_of(
+    request: &RegressRequest,
+    rows: &FormulaRows,
+    fit: &LinearFit,
+) -> Result<Vec<Vec<f64>>, StatisticsError> {
+    match request.robust {
+        true => robust_covariance(fit, &rows.x()),
+        false => Ok(fit.covariance_rows()),
+    }
+}
+
+fn steps_of(rows: &FormulaRows, selection: &Selection) -> Vec<StepOutcome> {
     let steps = selection.steps.iter().map(|step| StepOutcome {
         term: rows.frame.terms[step.term].name.clone(),
         action: if step.entered { "entered" } else { "removed" },
@@ -382,7 +404,7 @@ fn steps_of(rows: &ModelRows, selection: &Selection) -> Vec<StepOutcome> {
     steps.collect()
 }
 
-fn formula_of(formula: &Formula, rows: &ModelRows, selection: &Selection) -> String {
+fn formula_of(formula: &Formula, rows: &FormulaRows, selection: &Selection) -> String {
     let response = formula.response.as_ref().map(spelling).unwrap_or_default();
     let intercept = if formula.intercept { "1" } else { "0" };
     let terms = selection
@@ -397,8 +419,8 @@ fn means(
     request: &RegressRequest,
     data: &Data,
     formula: &Formula,
-    rows: &ModelRows,
-    fit: &LinearFit,
+    rows: &FormulaRows,
+    (fit, covariance): (&LinearFit, &[Vec<f64>]),
 ) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
     if request.after.is_empty() {
         return Ok((Vec::new(), Vec::new()));
@@ -408,11 +430,7 @@ fn means(
                        costs: fit the chosen terms without --select";
         return Err(unusable("--means", problem));
     }
-    let covariance = match request.robust {
-        true => robust_covariance_rows(fit, &rows.x),
-        false => fit.covariance_rows(),
-    };
-    let estimate = |weights: &[f64]| fit.estimate(weights, &covariance);
+    let estimate = |weights: &[f64]| fit.estimate(weights, covariance);
     let of_sums = |sums: &DMatrix<f64>| {
         let own = sums.select_columns(&fit.columns);
         let size = covariance.len();
@@ -442,16 +460,16 @@ fn means(
 fn predictions(
     asked: Option<&Data>,
     scale: Option<&OriginalScale>,
-    rows: &ModelRows,
+    rows: &FormulaRows,
     fit: &LinearFit,
 ) -> Result<Vec<PredictionOutcome>, Error> {
     let Some(asked) = asked else {
         return Ok(Vec::new());
     };
     let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
-    let found = predict(fit, &x).into_iter().zip(&asked.lines);
+    let found = predict(fit, &x).into_iter().zip(asked.lines.iter());
     Ok(found
-        .map(|(prediction, &line)| PredictionOutcome {
+        .map(|(prediction, line)| PredictionOutcome {
             line,
             original: original_prediction(
                 scale,

@@ -79,7 +79,7 @@ pub(crate) fn blocks_of(name: &str, data: &Data) -> Result<Categories, Error> {
     found.declared(&kept).or_else(|(row, text)| {
         wrong(format!(
             "line {}: there is no block \"{text}\"",
-            data.lines[row - 1]
+            data.line(row - 1)
         ))
     })
 }

@@ -3,6 +3,7 @@
 use crate::design::coding::coding_of_design;
 use crate::regress::findings::finding;
 use crate::rows::lines_text;
+use std::borrow::Cow;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
@@ -21,15 +22,18 @@ pub fn coded_factors(
     factors: &[String],
     ranges: &[String],
 ) -> Result<CodedFactors, Error> {
-    let mut columns: Vec<(String, &[f64])> = Vec::new();
+    let mut columns: Vec<(String, Cow<[f64]>)> = Vec::new();
     for name in factors {
         let values = data.table.numbers(name).map_err(|error| data.told(error))?;
+        let values = values.values();
         if values.iter().all(|value| *value == values[0]) {
             let name = name.clone();
             return Err(data.told(windfall_statistics::error::Error::Constant { name }));
         }
         columns.push((name.clone(), values));
     }
+    let columns = columns.iter().map(|(name, own)| (name.clone(), &**own));
+    let columns: Vec<(String, &[f64])> = columns.collect();
     let planned = coding_of_design(data, &columns)?;
     let mut coded = planned.unwrap_or_else(|| code_by_levels(&columns));
     if !ranges.is_empty() {

@@ -124,7 +124,7 @@ pub fn paintings_of_models(
             lines: rows.iter().map(|row| row.line).collect(),
             rows: rows.iter().map(|row| row.influence).collect(),
             df: model.residual.df,
-            parameters: rows.len() - model.residual.df as usize,
+            parameters: rows.iter().count() - model.residual.df as usize,
             confidence,
         };
         let name = format!("model-{}", model.response);

@@ -1,7 +1,7 @@
 //! A fitted surface as it is shown.
 
 use crate::regress::findings::{aliased_findings, finding, fit_findings, lack_finding};
-use crate::regress::outcome::rows_of;
+use crate::regress::outcome::RowOutcomes;
 use crate::surface::blocks::block_outcome;
 use crate::surface::outcome::{
     ActualTerm, CanonicalOutcome, RidgeOutcome, SurfaceModel, SurfaceTerm,
@@ -12,7 +12,7 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::Data;
 use windfall_statistics::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, AnovaType, SumOfSquares, anova_within};
-use windfall_statistics::residuals::diagnostics::{Inflation, inflation, influence};
+use windfall_statistics::residuals::diagnostics::{Inflation, Influence, inflation, influence};
 use windfall_statistics::surface::analysis::{Surface, surface_lack_of_fit};
 use windfall_statistics::surface::canonical::{Shape, canonical, ridge};
 use windfall_statistics::surface::coding::CodedFactors;
@@ -75,7 +75,7 @@ pub(crate) fn model_of(own: &Modelled) -> Result<(SurfaceModel, Vec<FindingOutco
         lack_of_fit,
         canonical: canonical_of(surface, own.coded),
         ridge: ridge_of(surface, own.coded),
-        influence: Vec::new(),
+        influence: RowOutcomes::default(),
     };
     match &surface.random {
         None => {
@@ -83,7 +83,8 @@ pub(crate) fn model_of(own: &Modelled) -> Result<(SurfaceModel, Vec<FindingOutco
             outcome.terms = terms_of(surface, (&fit.coefficients, &tests), &vif);
             let influence = influence(fit, y);
             findings.extend(fit_findings(fit, &influence, &vif, &own.data.lines, &[]));
-            outcome.influence = rows_of(influence, &own.data.lines);
+            let influence = Influence::of(fit.clone(), y.to_vec());
+            outcome.influence = RowOutcomes::new(influence, own.data.lines.clone());
         }
         Some(random) => {
             let estimates = random.coefficients();

@@ -1,7 +1,7 @@
 //! Fitted response surfaces as JSON shows them.
 
 use crate::regress::mixed_outcome::VarianceOutcome;
-use crate::regress::outcome::RowOutcome;
+use crate::regress::outcome::{RowOutcome, RowOutcomes};
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
 use windfall_statistics::model::anova::{LackOfFit, SumOfSquares};
@@ -171,7 +171,8 @@ pub struct SurfaceModel {
     /// Best points at distances from the centre.
     pub ridge: Vec<RidgeOutcome>,
     /// Runs with their influence.
-    pub influence: Vec<RowOutcome>,
+    #[schema(value_type = Vec<RowOutcome>)]
+    pub influence: RowOutcomes,
 }
 
 /// Settings with what they give.

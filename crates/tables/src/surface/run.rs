@@ -28,7 +28,7 @@ use windfall_files::table::data::Data;
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::model::expression::values;
 use windfall_statistics::model::formula_syntax::parse;
-use windfall_statistics::model::model_frame::{chosen_rows, rows_with_all};
+use windfall_statistics::model::model_rows::rows_with_all;
 use windfall_statistics::surface::analysis::fit_surface_in_blocks;
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::desirability::Goal;
@@ -147,7 +147,7 @@ pub fn fitted_surfaces(
         coded,
         reference,
         at_optimum,
-        lines: data.lines,
+        lines: data.lines.iter().collect(),
     };
     Ok((outcome, fitted))
 }
@@ -215,8 +215,7 @@ fn keep_complete(
     }
     let (kept, left_out) = rows_with_all(&data.table, &names).map_err(|error| data.told(error))?;
     let findings = left_out_finding(&left_out, &data.lines);
-    data.table = chosen_rows(&data.table, &kept).into_owned();
-    data.lines = kept.iter().map(|row| data.lines[*row]).collect();
+    data.keep(&kept);
     match kept.is_empty() {
         true => Err(Error::TableWithoutRows {
             path: request.table.clone(),
@@ -236,7 +235,7 @@ fn response_values(response: &str, data: &Data) -> Result<Vec<f64>, Error> {
             .table
             .numbers(response)
             .map_err(|error| data.told(error))?;
-        return Ok(numbers.to_vec());
+        return Ok(numbers.values().into_owned());
     }
     let node = parse(response).map_err(Error::Statistics)?;
     values(&node, &data.table).map_err(|error| data.told(error))
@@ -274,8 +273,8 @@ fn factor_outcomes(
                 name: name.clone(),
                 centre: coding.centre,
                 half_range: coding.half,
-                lowest: values.iter().copied().fold(f64::INFINITY, f64::min),
-                highest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                lowest: values.iter().fold(f64::INFINITY, f64::min),
+                highest: values.iter().fold(f64::NEG_INFINITY, f64::max),
             })
         })
         .collect()

@@ -18,6 +18,7 @@ use windfall_statistics::model::mean_contrasts::{
 use windfall_statistics::model::model_frame::{ModelFrame, chosen_rows};
 use windfall_statistics::model::original_scale::{OriginalScale, meaning};
 use windfall_statistics::model::reduced::Aliased;
+use windfall_statistics::runs::Runs;
 use windfall_statistics::table::Table;
 
 /// Most comparisons whose joint distribution is found.
@@ -32,7 +33,7 @@ pub(crate) struct Model<'a> {
     /// Rows that it was fitted to.
     pub table: &'a Table,
     /// Which rows of the table these are.
-    pub kept: &'a [usize],
+    pub kept: &'a Runs,
     /// What is modelled.
     pub response: Option<&'a Node>,
     /// Estimate of a sum of all its columns.
@@ -55,9 +56,10 @@ pub(crate) fn means_of(
 ) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
     let (columns, at, which) = (request.columns()?, request.held()?, request.which()?);
     let (adjustment, adjusted) = request.adjustment(&which)?;
+    let kept: Vec<usize> = model.kept.iter().collect();
     let asking = Asking {
         model,
-        table: &chosen_rows(model.table, model.kept),
+        table: &chosen_rows(model.table, &kept),
         at: &at,
         which: &which,
         adjustment,
