@@ -13,12 +13,12 @@ pub mod error;
 pub mod mixed;
 pub mod model;
 mod orthonormal;
-pub mod power;
 pub mod residuals;
 pub mod sample;
 pub mod sample_error;
 pub mod surface;
 pub mod table;
+pub mod weights;
 
 // What columns and rows of tables are made of.
 pub use windfall_numerics::{numbers, runs};

@@ -9,6 +9,7 @@ use crate::model::reduced::{Reduced, reduce};
 use crate::surface::coding::FactorCoding;
 use crate::surface::terms::{Monomial, SurfaceTerms, monomial_name, monomial_value};
 use crate::table::Categories;
+use crate::weights::Weights;
 use nalgebra::{DMatrix, DVector};
 use windfall_numerics::double_double::DoubleDouble;
 
@@ -262,7 +263,9 @@ pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> 
     });
     let columns: Vec<usize> = (0..settings.ncols()).collect();
     let left = (surface.fit.residual_ss, surface.fit.residual_df);
-    lack_of_fit(&settings, &columns, y, left).ok().flatten()
+    lack_of_fit(&settings, &columns, (y, &Weights::default()), left)
+        .ok()
+        .flatten()
 }
 
 /// Where a quadratic surface is flat, and how it curves there (Box & Draper 2007,
