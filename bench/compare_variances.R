@@ -1,7 +1,7 @@
 # Weights of rows against lm, lmer, emmeans, sandwich and car.
 # Part of compare_statistics.R.
 
-suppressMessages({ library(nlme); library(sandwich); library(lmtest) })
+suppressMessages({ library(nlme); library(sandwich) })
 
 formula_text <- function(formula) shQuote(paste(deparse(formula, width.cutoff = 500), collapse = ""))
 
@@ -164,3 +164,113 @@ check_weighed_mixed("cbpp", herds, rate ~ period + (1 | herd), "size", means = "
 # Rails, machines: means of as many measurements as there are.
 machines <- transform(aggregate(score ~ Worker + Machine, as.data.frame(nlme::Machines), mean), n = c(3, 1, 2, 3, 3, 1, 2, 3, 1), Worker = paste0("w", Worker), Machine = as.character(Machine))
 check_weighed_mixed("Machines", machines, score ~ Machine + (1 | Worker), "n", means = "Machine")
+
+# Residual variances by level: gls with varIdent. Its degrees of freedom are emmeans', which takes
+# derivatives by rough differences; they are also found here from the likelihood itself.
+level_variances <- function(fit, table, by) {
+  structure <- fit$modelStruct$varStruct
+  parts <- coef(structure, unconstrained = FALSE, allCoef = TRUE)
+  (fit$sigma * parts)^2
+}
+
+# Second derivative of the likelihood, and first of the covariance of the estimates, by the
+# logarithms of the variances: by Richardson's differences of what is written out here.
+uncertainty_of <- function(x, y, level, variances, restricted) {
+  groups <- names(variances)
+  likelihood <- function(logs) {
+    v <- exp(logs)[match(level, groups)]
+    fit <- lm.wfit(x, y, 1 / v)
+    fixed <- if (restricted) 2 * sum(log(abs(diag(qr.R(fit$qr))))) else 0
+    -0.5 * (sum(log(v)) + fixed + sum(fit$residuals^2 / v))
+  }
+  covariance <- function(logs) c(solve(crossprod(x / sqrt(exp(logs)[match(level, groups)]))))
+  logs <- log(variances)
+  slopes <- numDeriv::jacobian(covariance, logs)
+  size <- rep(ncol(x), 2)
+  list(
+    covariance = solve(-numDeriv::hessian(likelihood, logs)),
+    slopes = lapply(seq_along(groups), function(own) array(slopes[, own], size)), c = array(covariance(logs), size)
+  )
+}
+
+check_levels <- function(group, table, formula, by, maximum = FALSE, means = NULL) {
+  path <- write_table(group, table)
+  text <- formula_text(formula)
+  # emmeans takes rows with missing cells along otherwise.
+  table <- table[complete.cases(table[all.vars(formula)]), ]
+  table$.by <- table[[by]]
+  # nlme stops at a step of 1e-6: its fit is carried on from there.
+  control <- glsControl(tolerance = 1e-14, msTol = 1e-14, opt = "nlminb", maxIter = 500, msMaxIter = 500)
+  method <- if (maximum) "ML" else "REML"
+  fit <- do.call(gls, list(formula, table, weights = varIdent(form = ~ 1 | .by), method = method, control = control, na.action = na.omit))
+  asked <- paste("--variance", by, "--likelihood", tolower(method))
+  found <- ask(path, "--formula", text, asked)
+  limit <- 1e-5
+  own <- summary(fit)$tTable
+  compare(group, "estimate", found$terms$estimate, unname(own[, 1]), limit)
+  compare(group, "standard error", found$terms$se, unname(own[, 2]), limit)
+  compare(group, "log-likelihood, AIC", c(found$log_likelihood, found$aic), c(as.numeric(logLik(fit)), AIC(fit)), 1e-8)
+  variances <- level_variances(fit, table, by)
+  levels <- found$variances$levels
+  order <- match(levels$level, names(variances))
+  stopifnot(!anyNA(order))
+  compare(group, "standard deviations", levels$sd, unname(sqrt(variances[order])), limit)
+  one <- do.call(gls, list(formula, table, method = method, na.action = na.omit))
+  compare(group, "likelihood ratio", found$variances$test$statistic, 2 * as.numeric(logLik(fit) - logLik(one)), 1e-6)
+  compare(group, "p of it", found$variances$test$p, anova(fit, one)[["p-value"]][2], 1e-6)
+  frame <- model.frame(update(formula, . ~ . + .by), table)
+  x <- model.matrix(formula, frame)
+  windfall_variances <- setNames(levels$sd^2, levels$level)
+  exact <- uncertainty_of(x, model.response(frame), as.character(frame$.by), windfall_variances, !maximum)
+  df <- function(weights) {
+    slope <- vapply(exact$slopes, function(own) drop(weights %*% own %*% weights), 0)
+    2 * drop(weights %*% exact$c %*% weights)^2 / drop(slope %*% exact$covariance %*% slope)
+  }
+  compare(group, "degrees of freedom", found$terms$df, apply(diag(ncol(x)), 1, df), 1e-6)
+  compare(group, "freedom of variances", levels$df, 2 / unname(diag(exact$covariance)), 1e-6)
+  marginal <- ask(path, "--formula", text, asked, "--anova 3")
+  old <- options(contrasts = c("contr.sum", "contr.poly"))
+  summed <- do.call(gls, list(formula, table, weights = varIdent(form = ~ 1 | .by), method = method, control = control, na.action = na.omit))
+  theirs <- anova(summed, type = "marginal")
+  options(old)
+  compare(group, "F of type III", marginal$anova$f, theirs[setdiff(rownames(theirs), "(Intercept)"), "F-value"], limit)
+  sequential <- ask(path, "--formula", text, asked, "--anova 1")
+  theirs <- anova(fit, type = "sequential")
+  compare(group, "F of type I", sequential$anova$f, theirs[setdiff(rownames(theirs), "(Intercept)"), "F-value"], limit)
+  if (!is.null(means)) {
+    answer <- ask(path, "--formula", text, asked, "--means", means)$means
+    grid <- emmeans(fit, means, data = table, mode = "satterthwaite")
+    theirs <- as.data.frame(grid)
+    order <- match(unlist(answer$means[[1]]$levels), as.character(theirs[[means]]))
+    compare(group, "means", c(answer$means[[1]]$mean, answer$means[[1]]$se), c(theirs$emmean[order], theirs$SE[order]), limit)
+    # Of fits by maximum likelihood emmeans' depend on which level is the reference.
+    if (!maximum) compare(group, "degrees of freedom of means in emmeans", answer$means[[1]]$df, theirs$df[order], 2e-2)
+    pairs <- as.data.frame(contrast(grid, "revpairwise"))
+    compare(group, "differences", sort(abs(answer$differences[[1]]$t)), sort(abs(pairs$t.ratio)), limit)
+  }
+}
+
+uneven <- data.frame(g = rep(c("a", "b", "c"), c(6, 11, 8)), V = round(runif(25), 3))
+uneven$y <- signif(3 + uneven$V + c(0, 1, 2)[factor(uneven$g)] + rnorm(25, 0, c(0.5, 2, 1)[factor(uneven$g)]), 6)
+check_levels("levels: one-way", uneven, y ~ g, "g", means = "g")
+check_levels("levels: covariate", uneven, y ~ g + V, "g", means = "g")
+check_levels("levels: interaction by ML", uneven, y ~ g * V, "g", TRUE, "g")
+uneven$y[c(4, 15)] <- NA
+uneven$h <- rep(c("u", "v"), length.out = 25)
+check_levels("levels: of another category, missing cells", uneven, log(y^2) ~ g + h, "h", means = "g")
+# Data of other people.
+teeth <- transform(as.data.frame(nlme::Orthodont), Sex = as.character(Sex))[c("distance", "age", "Sex")]
+check_levels("levels: Orthodont", teeth, distance ~ age * Sex, "Sex", means = "Sex")
+feed <- transform(chickwts, feed = as.character(feed))
+check_levels("levels: chickwts", feed, weight ~ feed, "feed", means = "feed")
+sprays <- transform(InsectSprays, spray = as.character(spray))[-c(3, 4, 40, 41, 42), ]
+check_levels("levels: InsectSprays", sprays, count ~ spray, "spray", means = "spray")
+flowers <- transform(iris, Species = as.character(Species))[-(1:17), ]
+names(flowers) <- gsub(".", "_", names(flowers), fixed = TRUE)
+check_levels("levels: iris", flowers, Sepal_Length ~ Petal_Length + Species, "Species", means = "Species")
+check_levels("levels: iris by ML", flowers, Sepal_Length ~ Petal_Length * Species, "Species", TRUE)
+check_levels("levels: ToothGrowth", growth[-c(1, 2, 33), ], len ~ supp * dose, "dose", means = "supp")
+months <- transform(airquality, Month = paste0("m", Month))
+check_levels("levels: airquality", months, Ozone ~ Temp + Wind + Month, "Month")
+jobs <- transform(na.omit(carData::Prestige), type = as.character(type))
+check_levels("levels: Prestige", jobs, prestige ~ education + log(income) + type, "type", means = "type")

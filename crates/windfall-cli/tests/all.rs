@@ -43,4 +43,5 @@ mod surface_blocks;
 mod table_figures;
 mod tables;
 mod user_laws;
+mod variances;
 mod velocities;
