@@ -5,7 +5,6 @@
 
 pub mod accurate_sum;
 pub mod as_written;
-pub mod chain_diagnostics;
 pub mod coefficient;
 pub mod compare;
 pub mod distribution;

@@ -6,9 +6,9 @@ use windfall_files::text::columns::given;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{number, probability};
 
+use crate::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use serde::Serialize;
 use std::borrow::Cow;
-use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_rows::FormulaRows;
 use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox_weighed};
