@@ -193,6 +193,7 @@ plots[c("sub", "whole", "day")] <- lapply(plots[c("sub", "whole", "day")], as.ch
 check_mixed("split-plot with missing plots", plots, y ~ sub * whole + x + (1 | day / whole), joint = 1e-3)
 
 source("bench/compare_means.R")
+source("bench/compare_variances.R")
 
 # Central composite designs in blocks, as windfall makes them: `surface` against lm with the
 # block, pure error from rows with equal settings within a block.

@@ -1,6 +1,7 @@
 //! Draws from a distribution by the no-U-turn sampler, from its log-density and
 //! gradient.
 
+pub mod chain_diagnostics;
 #[cfg(feature = "sampler")]
 mod chains;
 mod density;

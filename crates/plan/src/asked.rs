@@ -2,12 +2,12 @@
 
 use crate::options::PlanOptions;
 use crate::parse::{Fruit, at_least_zero, fruit, impacts, part, positive};
+use crate::power::Sides;
 use crate::question::{Levels, Question, Size};
 use crate::search::Goal;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::text::number::plain;
-use windfall_statistics::power::Sides;
 
 /// What fruit and impacts cost.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,7 @@ pub mod options;
 pub mod outcome;
 mod parse;
 pub mod population;
+pub mod power;
 mod question;
 mod replicates;
 mod run;

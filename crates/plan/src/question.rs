@@ -1,10 +1,10 @@
 //! What is asked of a study: what one of a size would tell.
 
 use crate::outcome::{PrecisionOutcome, ShareOutcome};
+use crate::power::half_width::{assured_half_width, expected_half_width};
+use crate::power::{Sides, Test};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::power::half_width::{assured_half_width, expected_half_width};
-use windfall_statistics::power::{Sides, Test};
 
 /// Name of the share of simulated intervals that hold the truth.
 pub(crate) const COVERAGE: &str = "coverage";

@@ -63,6 +63,24 @@ pub enum Error {
         row: usize,
         known: String,
     },
+    #[error(
+        "the weight {name} is {weight} in row {row}: weights are positive and finite; leave the \
+         cell blank to leave the row out"
+    )]
+    Weight {
+        name: String,
+        weight: f64,
+        row: usize,
+    },
+    #[error(
+        "{column}: the level {level:?} {what}, so its rows tell no variance of their own: put it \
+         together with another level, leave its rows out, or fit without --variance"
+    )]
+    LevelVariance {
+        column: String,
+        level: String,
+        what: String,
+    },
     #[error("{name:?} has one value in all rows: it can explain nothing")]
     Constant { name: String },
     #[error("{what}: {problem}")]
@@ -84,6 +102,7 @@ impl Error {
             Self::NotNumbers { row, .. }
             | Self::NumbersWithText { row, .. }
             | Self::NotFinite { row, .. }
+            | Self::Weight { row, .. }
             | Self::UnknownLevel { row, .. } => Some(row),
             _ => None,
         }

@@ -5,7 +5,6 @@
 
 pub mod accurate_sum;
 pub mod as_written;
-pub mod chain_diagnostics;
 pub mod coefficient;
 pub mod compare;
 pub mod distribution;
@@ -13,12 +12,12 @@ pub mod error;
 pub mod mixed;
 pub mod model;
 mod orthonormal;
-pub mod power;
 pub mod residuals;
 pub mod sample;
 pub mod sample_error;
 pub mod surface;
 pub mod table;
+pub mod weights;
 
 // What columns and rows of tables are made of.
 pub use windfall_numerics::{numbers, runs};

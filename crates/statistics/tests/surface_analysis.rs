@@ -169,7 +169,12 @@ fn rows() -> ModelRows {
 #[test]
 fn closed_form_pure_error_of_repeated_settings() {
     let settings = nalgebra::DMatrix::from_row_slice(5, 1, &[0.0, -0.0, 0.0, 1.0, 2.0]);
-    let found = lack_of_fit(&settings, &[0], &[1.0, 2.0, 3.0, 9.0, 5.0], (30.0, 3));
+    let found = lack_of_fit(
+        &settings,
+        &[0],
+        (&[1.0, 2.0, 3.0, 9.0, 5.0], &Weights::default()),
+        (30.0, 3),
+    );
     let found = found.unwrap().unwrap();
     assert_eq!((found.pure_error.ss, found.pure_error.df), (2.0, 2.0));
     assert_eq!(

@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod design;
 pub mod figures;
+mod goodness_index;
 #[cfg(feature = "clap")]
 mod option_words;
 pub mod reading;

@@ -44,4 +44,5 @@ mod surface_random;
 mod table_figures;
 mod tables;
 mod user_laws;
+mod variances;
 mod velocities;

@@ -1,8 +1,8 @@
 //! Methods of intervals, their options and what they report besides the ends.
 
 use crate::sampler::Drawing;
+use crate::sampler::chain_diagnostics::ChainDiagnostics;
 use serde::Serialize;
-use windfall_statistics::chain_diagnostics::ChainDiagnostics;
 
 /// How intervals are made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]

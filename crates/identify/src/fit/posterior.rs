@@ -5,9 +5,9 @@ use crate::fit::interval::{
     FreeIntervals, IntervalDetail, IntervalPlan, Posterior, deviation, quantile,
 };
 use crate::fit::search::Share;
+use crate::sampler::chain_diagnostics::{ChainDiagnostics, chain_diagnostics};
 use crate::sampler::{Drawing, LogDensity, draw_chains};
 use windfall_numerics::least_squares::Minimum;
-use windfall_statistics::chain_diagnostics::{ChainDiagnostics, chain_diagnostics};
 
 /// Chains start this many standard deviations around the estimate.
 const START_SPREAD: f64 = 1.0;

@@ -9,10 +9,10 @@ use crate::population::level::{Level, Normal};
 use crate::population::model::{
     Expand, Expansion, PopulationData, PopulationFit, PopulationOptions,
 };
+use crate::sampler::chain_diagnostics::ChainDiagnostics;
 use crate::sampler::{Drawing, LogDensity, check_sampler, draw_chains};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
-use windfall_statistics::chain_diagnostics::ChainDiagnostics;
 
 /// Summary of a quantity's draws.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,13 +3,13 @@
 use crate::achieved::outcome::{AchievedEstimate, AchievedOutcome};
 use crate::achieved::request::AchievedRequest;
 use crate::parse::part;
+use crate::power::t_test::detectable_effect;
+use crate::power::{Sides, Test};
 use crate::study::read_study;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_statistics::distribution::tail::t_upper_quantile;
 use windfall_statistics::mixed::finding::MixedFinding;
-use windfall_statistics::power::t_test::detectable_effect;
-use windfall_statistics::power::{Sides, Test};
 use windfall_tables::regress::means::request::{Adjust, MeansRequest};
 use windfall_tables::regress::mixed::MixedOutcome;
 use windfall_tables::regress::request::RegressRequest;

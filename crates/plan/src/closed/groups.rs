@@ -1,11 +1,11 @@
 //! Several means and their F test.
 
 use crate::outcome::exact;
+use crate::power::t_test::f_power;
 use crate::question::{Count, Levels, Question, Size, Told};
 use crate::scatter::KnownScatter;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::power::t_test::f_power;
 
 /// Means of groups of fruit, or of treatments of the same fruit.
 pub(crate) struct GroupsQuestion {

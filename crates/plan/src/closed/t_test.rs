@@ -1,19 +1,19 @@
 //! One number and its t test: a mean, a difference, a slope.
 
 use crate::outcome::exact;
+use crate::power::drawn_slope::{
+    drawn_slope_assured_half_width, drawn_slope_detectable, drawn_slope_half_width,
+    drawn_slope_power,
+};
+use crate::power::t_test::{detectable_effect, t_power};
+use crate::power::welch::{
+    TwoGroups, true_error, welch_assured_half_width, welch_df, welch_half_width, welch_power,
+};
 use crate::question::{Count, Levels, Question, Size, Told};
 use crate::scatter::{KnownScatter, Scatter};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_statistics::power::drawn_slope::{
-    drawn_slope_assured_half_width, drawn_slope_detectable, drawn_slope_half_width,
-    drawn_slope_power,
-};
-use windfall_statistics::power::t_test::{detectable_effect, t_power};
-use windfall_statistics::power::welch::{
-    TwoGroups, true_error, welch_assured_half_width, welch_df, welch_half_width, welch_power,
-};
 
 /// What is estimated, and how the study is laid out.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! One simulated study: drawn from the fitted model, fitted and tested.
 
+use crate::power::Sides;
 use crate::question::Levels;
 use crate::study::{Resized, Study};
 use nalgebra::{DMatrix, DVector};
@@ -11,7 +12,6 @@ use windfall_statistics::mixed::inference::{
     estimate, f_test, picking_contrast, variance_uncertainty,
 };
 use windfall_statistics::mixed::term::RandomTerm;
-use windfall_statistics::power::Sides;
 
 /// A study that is to be simulated.
 pub(crate) struct Layout {

@@ -3,7 +3,7 @@
 mod incomplete_beta;
 mod incomplete_gamma;
 pub mod largest_t;
-pub(crate) mod log_gamma_rest;
+pub mod log_gamma_rest;
 pub mod noncentral;
 pub mod quantile;
 pub mod studentized_range;

@@ -130,7 +130,7 @@ pub fn noncentral_f_upper(f: f64, df_above: f64, df_below: f64, ncp: f64) -> f64
 }
 
 /// A probability without the rounding of its sum; NaN stays NaN, which `min` would hide.
-pub(crate) fn at_most_one(probability: f64) -> f64 {
+pub fn at_most_one(probability: f64) -> f64 {
     match probability > 1.0 {
         true => 1.0,
         false => probability,

@@ -24,6 +24,8 @@ pub(crate) struct Criterion {
     pub denominator: f64,
     /// log|X'X| of the given columns against the orthonormal ones.
     pub log_basis: f64,
+    /// Sum of the logarithms of the weights.
+    pub log_weights: f64,
 }
 
 impl Criterion {
@@ -33,6 +35,7 @@ impl Criterion {
             restricted,
             denominator: if restricted { n - p } else { n },
             log_basis: 2.0 * model.basis.r.diagonal().map(f64::ln).sum(),
+            log_weights: model.weights.log_sum(),
         }
     }
 
@@ -44,7 +47,7 @@ impl Criterion {
         } else {
             0.0
         };
-        state.log_v + restricted + k * (1.0 + (TAU * state.squares / k).ln())
+        state.log_v - self.log_weights + restricted + k * (1.0 + (TAU * state.squares / k).ln())
     }
 
     /// Derivative by the entries of Λ's blocks.

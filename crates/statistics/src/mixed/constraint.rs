@@ -144,7 +144,9 @@ impl<'a> Constrained<'a> {
         let variance = (2.0 * point.log_sigma).exp();
         let criterion = Criterion::of_model(model, self.fit.method == MixedMethod::Reml);
         let n = criterion.denominator;
-        let mut deviance = state.log_v + n * (TAU * variance).ln() + state.squares / variance;
+        let mut deviance = state.log_v - criterion.log_weights
+            + n * (TAU * variance).ln()
+            + state.squares / variance;
         let (slopes, _) = slopes(model, &state);
         let mut by_block: Vec<DMatrix<f64>> = slopes
             .log_v

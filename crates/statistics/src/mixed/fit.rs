@@ -5,10 +5,11 @@ use crate::mixed::effects::{RandomEffects, fitted_values, random_effects};
 use crate::mixed::error::MixedError;
 use crate::mixed::evaluate::State;
 use crate::mixed::finding::MixedFinding;
-use crate::mixed::model::{MixedModel, prepare_mixed};
+use crate::mixed::model::{MixedModel, prepare_mixed, prepare_weighed};
 use crate::mixed::slope::{Projections, slopes};
 use crate::mixed::term::RandomTerm;
 use crate::mixed::theta::{relative_covariance, semidefinite_root};
+use crate::weights::Weights;
 use nalgebra::{DMatrix, DVector};
 
 /// What is maximised.
@@ -140,6 +141,21 @@ pub fn fit_mixed(
     fit_mixed_model(prepare_mixed(y, x, x_names, terms)?, options)
 }
 
+/// [`fit_mixed`] of rows whose residual variance is σ² over their weight, as `weights` of R's
+/// `lmer`.
+///
+/// # Errors
+/// As [`fit_mixed`]; a number of weights other than that of rows.
+pub fn fit_mixed_weighed(
+    rows: (&[f64], &Weights),
+    x: &DMatrix<f64>,
+    x_names: &[String],
+    terms: &[RandomTerm],
+    options: &MixedOptions,
+) -> Result<MixedFit, MixedError> {
+    fit_mixed_model(prepare_weighed(rows, x, x_names, terms)?, options)
+}
+
 /// Fits a prepared model, or returns [`MixedError::NoCriterion`].
 pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<MixedFit, MixedError> {
     let criterion = Criterion::of_model(&model, options.method == MixedMethod::Reml);
@@ -152,13 +168,13 @@ pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<Mixe
     let residual_sd = variance.sqrt();
     let (coefficients, covariance) = fixed_effects(&model, &state, variance);
     let effects = random_effects(&model, &state, &projections, residual_sd);
-    let fitted = fitted_values(&model, &coefficients, &effects);
-    let residuals = model
-        .y
-        .iter()
-        .zip(&fitted)
-        .map(|(y, fitted)| y - fitted)
-        .collect();
+    let weighted = fitted_values(&model, &coefficients, &effects);
+    let rows = model.y.iter().zip(&weighted).enumerate();
+    let residuals = rows.map(|(row, (y, fitted))| (y - fitted) / model.weights.root(row));
+    let residuals = residuals.collect();
+    let rows = weighted.iter().enumerate();
+    let fitted = rows.map(|(row, fitted)| fitted / model.weights.root(row));
+    let fitted = fitted.collect();
     let variances = (0..model.terms.len())
         .map(|term| term_variance(&model, &state, term, variance))
         .collect();

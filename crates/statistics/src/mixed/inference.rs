@@ -29,6 +29,17 @@ pub struct VarianceUncertainty {
     pub findings: Vec<MixedFinding>,
 }
 
+impl VarianceUncertainty {
+    /// Of other parameters.
+    pub(crate) fn of(covariance: DMatrix<f64>, slopes: Vec<DMatrix<f64>>) -> Self {
+        Self {
+            covariance,
+            slopes,
+            findings: Vec::new(),
+        }
+    }
+}
+
 /// Test that several combinations of coefficients are all zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FTest {
@@ -171,18 +182,26 @@ pub(crate) fn degrees_of_freedom(
     2.0 * variance * variance / (slope.transpose() * &uncertainty.covariance * slope)[(0, 0)]
 }
 
-/// Degrees of freedom of a combination of coefficients.
-fn contrast_df(
+/// Variance and degrees of freedom of a combination of coefficients.
+///
+/// * `further`: a parameter that is the logarithm of a variance to be added, and that variance
+pub(crate) fn contrast_df(
     uncertainty: &VarianceUncertainty,
     covariance: &DMatrix<f64>,
     weights: &DVector<f64>,
-) -> f64 {
+    further: Option<(usize, f64)>,
+) -> (f64, f64) {
     let quadratic = |matrix: &DMatrix<f64>| (weights.transpose() * matrix * weights)[(0, 0)];
-    let slope = DVector::from_iterator(
+    let mut variance = quadratic(covariance);
+    let mut slope = DVector::from_iterator(
         uncertainty.slopes.len(),
         uncertainty.slopes.iter().map(quadratic),
     );
-    degrees_of_freedom(uncertainty, quadratic(covariance), &slope)
+    if let Some((parameter, more)) = further {
+        variance += more;
+        slope[parameter] += more;
+    }
+    (variance, degrees_of_freedom(uncertainty, variance, &slope))
 }
 
 /// A sum of coefficients with Satterthwaite's degrees of freedom.
@@ -191,7 +210,7 @@ pub fn estimate(fit: &MixedFit, uncertainty: &VarianceUncertainty, weights: &[f6
     Estimated {
         value: weights.dot(&DVector::from_column_slice(&fit.coefficients)),
         se: (weights.transpose() * &fit.covariance * &weights)[(0, 0)].sqrt(),
-        df: contrast_df(uncertainty, &fit.covariance, &weights),
+        df: contrast_df(uncertainty, &fit.covariance, &weights, None).1,
     }
 }
 
@@ -204,7 +223,7 @@ pub fn coefficient_tests(
     let p = fit.model.coefficients();
     let tests = (0..p).map(|k| {
         let weights = DVector::from_fn(p, |i, _| f64::from(u8::from(i == k)));
-        let df = contrast_df(uncertainty, &fit.covariance, &weights);
+        let (_, df) = contrast_df(uncertainty, &fit.covariance, &weights, None);
         test_of(
             fit,
             &fit.covariance,
@@ -257,13 +276,22 @@ pub fn f_test(
     uncertainty: &VarianceUncertainty,
     contrast: &DMatrix<f64>,
 ) -> Result<FTest, MixedError> {
-    let p = fit.model.coefficients();
+    f_test_of((&fit.coefficients, &fit.covariance), uncertainty, contrast)
+}
+
+/// [`f_test`] of estimates with their covariance.
+pub(crate) fn f_test_of(
+    (estimates, variances): (&[f64], &DMatrix<f64>),
+    uncertainty: &VarianceUncertainty,
+    contrast: &DMatrix<f64>,
+) -> Result<FTest, MixedError> {
+    let p = estimates.len();
     check_length("columns of the contrast", contrast.ncols(), p)?;
     check_contrast(contrast)?;
-    let covariance = contrast * &fit.covariance * contrast.transpose();
+    let covariance = contrast * variances * contrast.transpose();
     let eigen = covariance.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
-    let beta = DVector::from_column_slice(&fit.coefficients);
+    let beta = DVector::from_column_slice(estimates);
     let mut sum = 0.0;
     let mut dfs = Vec::new();
     for (value, vector) in directions(&eigen) {
@@ -272,7 +300,7 @@ pub fn f_test(
         }
         let weights = contrast.tr_mul(&vector);
         sum += weights.dot(&beta).powi(2) / value;
-        dfs.push(contrast_df(uncertainty, &fit.covariance, &weights));
+        dfs.push(contrast_df(uncertainty, variances, &weights, None).1);
     }
     if dfs.is_empty() {
         return Err(MixedError::EmptyContrast);

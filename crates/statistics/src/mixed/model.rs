@@ -4,6 +4,7 @@ use crate::mixed::basis::{Basis, Dependent, norm, orthonormal_basis};
 use crate::mixed::blocks::{Factor, Leaf, TermPlace, Trunk, fixed_square, leaf_of, trunk_of};
 use crate::mixed::error::MixedError;
 use crate::mixed::term::{RandomTerm, check_finite, check_length, check_term};
+use crate::weights::Weights;
 use nalgebra::{DMatrix, DVector};
 
 /// A residual shorter than this share of the response is rounding.
@@ -16,6 +17,8 @@ const NO_RESIDUAL: f64 = 1e-12;
 /// least squares residual, so that no digits are lost to large means.
 #[derive(Clone, Debug)]
 pub struct MixedModel {
+    /// What the rows weigh; response and columns are times the roots of it.
+    pub(crate) weights: Weights,
     /// The response.
     pub(crate) y: Vec<f64>,
     pub(crate) x_names: Vec<String>,
@@ -50,6 +53,11 @@ impl MixedModel {
         self.x_names.len()
     }
 
+    /// What the rows weigh.
+    pub fn weights(&self) -> &Weights {
+        &self.weights
+    }
+
     /// The random terms.
     pub fn terms(&self) -> &[RandomTerm] {
         &self.terms
@@ -78,6 +86,37 @@ pub fn prepare_mixed(
     x_names: &[String],
     terms: &[RandomTerm],
 ) -> Result<MixedModel, MixedError> {
+    prepare_weighed((y, &Weights::default()), x, x_names, terms)
+}
+
+/// [`prepare_mixed`] of rows whose residual variance is σ² over their weight.
+///
+/// # Errors
+/// As [`prepare_mixed`]; a number of weights other than that of rows.
+pub fn prepare_weighed(
+    (y, weights): (&[f64], &Weights),
+    x: &DMatrix<f64>,
+    x_names: &[String],
+    terms: &[RandomTerm],
+) -> Result<MixedModel, MixedError> {
+    if !weights.is_empty() {
+        check_length("rows of the fixed effects", x.nrows(), y.len())?;
+        check_length("weights", weights.len(), y.len())?;
+        for term in terms {
+            check_term(term, y.len())?;
+        }
+        let mut model = prepare_mixed(
+            &weights.weigh(y),
+            &weights.weigh_columns(x),
+            x_names,
+            &terms
+                .iter()
+                .map(|own| weighed(own, weights))
+                .collect::<Vec<_>>(),
+        )?;
+        model.weights = weights.clone();
+        return Ok(model);
+    }
     check_fixed(y, x, x_names)?;
     if terms.is_empty() {
         let name = "the random part of the mixed model".to_owned();
@@ -98,6 +137,7 @@ pub fn prepare_mixed(
     let leaf = leaf_of(&factors, &trunk, &fixed);
     let fixed = fixed_square(&fixed);
     Ok(MixedModel {
+        weights: Weights::default(),
         y: y.to_vec(),
         x_names: x_names.to_vec(),
         x: x.clone(),
@@ -110,6 +150,15 @@ pub fn prepare_mixed(
         trunk,
         fixed,
     })
+}
+
+/// A term with its columns times the roots of weights.
+fn weighed(term: &RandomTerm, weights: &Weights) -> RandomTerm {
+    let columns = term.columns.iter();
+    RandomTerm {
+        columns: columns.map(|own| weights.weigh(own).into_owned()).collect(),
+        ..term.clone()
+    }
 }
 
 fn check_fixed(y: &[f64], x: &DMatrix<f64>, x_names: &[String]) -> Result<(), MixedError> {

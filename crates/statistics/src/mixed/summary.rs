@@ -10,7 +10,7 @@ pub struct VarianceShares {
     pub fixed: f64,
     /// Mean variance of each random term's effects over the rows: z'Σz.
     pub random: Vec<f64>,
-    /// Residual variance.
+    /// Mean residual variance over the rows: σ² over their weights.
     pub residual: f64,
     /// R² of the fixed effects.
     pub r2_marginal: f64,
@@ -27,7 +27,10 @@ pub struct VarianceShares {
 /// in Johnson (2014), 5, 944-946.
 pub fn variance_shares(fit: &MixedFit) -> VarianceShares {
     let n = fit.model.rows() as f64;
-    let expected = &fit.model.x * DVector::from_column_slice(&fit.coefficients);
+    let weights = &fit.model.weights;
+    let mut expected = &fit.model.x * DVector::from_column_slice(&fit.coefficients);
+    let rows = expected.iter_mut().enumerate();
+    rows.for_each(|(row, own)| *own /= weights.root(row));
     let mean = expected.mean();
     let fixed = expected
         .iter()
@@ -43,12 +46,13 @@ pub fn variance_shares(fit: &MixedFit) -> VarianceShares {
             let rows = (0..fit.model.rows()).map(|row| {
                 let z =
                     DVector::from_iterator(term.columns.len(), term.columns.iter().map(|c| c[row]));
-                (z.transpose() * &variance.covariance * z)[(0, 0)]
+                (z.transpose() * &variance.covariance * z)[(0, 0)] / weights.weight(row)
             });
             rows.sum::<f64>() / n
         })
         .collect();
-    let residual = fit.residual_sd * fit.residual_sd;
+    let rows = (0..fit.model.rows()).map(|row| 1.0 / weights.weight(row));
+    let residual = fit.residual_sd * fit.residual_sd * (rows.sum::<f64>() / n);
     let groups: f64 = random.iter().sum();
     let total = fixed + groups + residual;
     VarianceShares {

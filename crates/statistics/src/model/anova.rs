@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::Reduced;
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -66,12 +67,68 @@ pub struct Anova {
 ///
 /// * `terms`: positions of the terms of the frame that are in the model
 pub fn anova(frame: &ModelFrame, reduced: &Reduced, terms: &[usize], kind: AnovaType) -> Anova {
-    let contains = |outer: usize, inner: usize| {
-        let outer: Vec<usize> = frame.terms[outer].atoms.iter().map(|a| a.0).collect();
-        let mut inner = frame.terms[inner].atoms.iter().map(|a| a.0);
-        inner.all(|atom| outer.contains(&atom))
-    };
+    let contains = |outer: usize, inner: usize| contains(frame, outer, inner);
     anova_within((frame, reduced), &[], terms, kind, &contains)
+}
+
+/// Whether a term, the first, contains another.
+fn contains(frame: &ModelFrame, outer: usize, inner: usize) -> bool {
+    let outer: Vec<usize> = frame.terms[outer].atoms.iter().map(|a| a.0).collect();
+    let mut inner = frame.terms[inner].atoms.iter().map(|a| a.0);
+    inner.all(|atom| outer.contains(&atom))
+}
+
+/// Sums of coefficients that are zero where a term explains nothing, a row of weights of all
+/// columns for each: what [`anova`] tests where the variance is known.
+///
+/// * `place`: the term's among `terms`
+pub fn hypothesis(
+    (frame, reduced): (&ModelFrame, &Reduced),
+    terms: &[usize],
+    place: usize,
+    kind: AnovaType,
+) -> DMatrix<f64> {
+    let own = terms[place];
+    let first = |term: usize| match kind {
+        AnovaType::Sequential => terms[..place].contains(&term),
+        AnovaType::Hierarchical => term != own && !contains(frame, term, own),
+        AnovaType::Partial => term != own,
+    };
+    let columns = |chosen: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        let chosen = terms.iter().filter(|term| chosen(**term));
+        let columns = chosen.flat_map(|term| frame.terms[*term].columns.clone());
+        columns.collect()
+    };
+    let base: Vec<usize> = frame.intercept.then_some(0).into_iter().collect();
+    let estimated = reduced.solve(&[base.clone(), columns(&|_| true)].concat());
+    // Those before the term, the term, and those after it.
+    let order = [
+        base,
+        columns(&first),
+        columns(&|term| term == own),
+        columns(&|term| term != own && !first(term)),
+    ];
+    let mut order = order.concat();
+    order.retain(|column| estimated.columns.contains(column));
+    let solved = reduced.solve(&order);
+    // The triangle's rows of the term.
+    let count = solved.columns.len();
+    let triangle = solved
+        .inverse
+        .solve_upper_triangular(&DMatrix::identity(count, count));
+    let triangle = triangle.unwrap_or_else(|| DMatrix::identity(count, count));
+    let places = (0..count).filter(|own_place| {
+        let column = solved.columns[*own_place];
+        frame.terms[own].columns.contains(&column)
+    });
+    let places: Vec<usize> = places.collect();
+    let mut sums = DMatrix::zeros(places.len(), frame.names.len());
+    for (row, place) in places.into_iter().enumerate() {
+        for (inner, column) in solved.columns.iter().enumerate() {
+            sums[(row, *column)] = triangle[(place, inner)];
+        }
+    }
+    sums
 }
 
 /// [`anova`] with the columns of blocks, which stand before all terms.
@@ -182,18 +239,19 @@ pub struct LackOfFit {
 pub fn lack_of_fit<'a>(
     x: impl Into<ModelMatrix<'a>>,
     columns: &[usize],
-    y: &[f64],
+    (y, weights): (&[f64], &Weights),
     (residual_ss, residual_df): (f64, usize),
 ) -> Result<Option<LackOfFit>, Error> {
     let order = repeated(&x.into(), columns)?;
     let (mut pure_ss, mut pure_df) = (0.0, 0);
     for group in order.chunk_by(|a, b| a.0 == b.0) {
         let group: Vec<usize> = group.iter().map(|(_, row)| *row).collect();
-        let mean = group.iter().map(|row| y[*row]).sum::<f64>() / group.len() as f64;
-        pure_ss += group
-            .iter()
-            .map(|row| (y[*row] - mean).powi(2))
-            .sum::<f64>();
+        let weight = |row: &usize| weights.weight(*row);
+        let sum: f64 = group.iter().map(|row| weight(row) * y[*row]).sum();
+        let mean = sum / group.iter().map(weight).sum::<f64>();
+        let squares = group.iter();
+        let squares = squares.map(|row| weight(row) * (y[*row] - mean).powi(2));
+        pure_ss += squares.sum::<f64>();
         pure_df += group.len() - 1;
     }
     if pure_df == 0 || residual_df < pure_df {

@@ -8,6 +8,7 @@ use crate::model::anova::{AnovaRow, SumOfSquares};
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::{Aliased, Reduced, Solved, reduce};
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -42,7 +43,9 @@ pub struct LinearFit {
     pub confidence: f64,
     /// A bound from below of the condition of the columns at length one.
     pub condition: f64,
-    /// Residuals.
+    /// What the rows weigh.
+    pub weights: Weights,
+    /// Observed less fitted.
     pub residuals: Vec<f64>,
     /// Leverages: diagonal of the hat matrix.
     pub leverages: Vec<f64>,
@@ -76,7 +79,21 @@ pub fn fit_reduced<'a>(
     wanted: &[usize],
     confidence: f64,
 ) -> Result<LinearFit, Error> {
-    let (x, solved) = (x.into(), reduced.solve(wanted));
+    let rows = (x.into(), y, &Weights::default());
+    fit_weighted(frame, rows, reduced, wanted, confidence)
+}
+
+/// As [`fit_reduced`], with rows that weigh differently.
+///
+/// * `reduced`: of the weighted rows
+pub fn fit_weighted(
+    frame: &ModelFrame,
+    (x, y, weights): (ModelMatrix, &[f64], &Weights),
+    reduced: &Reduced,
+    wanted: &[usize],
+    confidence: f64,
+) -> Result<LinearFit, Error> {
+    let solved = reduced.solve(wanted);
     let (rows, count) = (x.rows(), solved.columns.len());
     if rows < wanted.len() {
         return Err(Error::TooFewRows {
@@ -94,7 +111,7 @@ pub fn fit_reduced<'a>(
     let residual_df = rows - count;
     // Exact fits leave the rounding of the data.
     let residual_ss = solved.residual.value().max(0.0);
-    let (residuals, leverages) = residuals_and_leverages(&x, y, &solved)?;
+    let (residuals, leverages) = residuals_and_leverages(&x, y, weights, &solved)?;
     let unscaled = &solved.inverse * solved.inverse.transpose();
     let variance = residual_ss / residual_df as f64;
     let df = residual_df as f64;
@@ -124,6 +141,7 @@ pub fn fit_reduced<'a>(
         total_ss,
         confidence,
         condition: solved.condition,
+        weights: weights.clone(),
         residuals,
         leverages,
     })
@@ -161,6 +179,7 @@ fn total(reduced: &Reduced, intercept: bool) -> f64 {
 fn residuals_and_leverages(
     x: &ModelMatrix,
     y: &[f64],
+    weights: &Weights,
     solved: &Solved,
 ) -> Result<(Vec<f64>, Vec<f64>), Error> {
     let precise = y.len() * solved.columns.len() <= 1_000_000;
@@ -173,6 +192,9 @@ fn residuals_and_leverages(
         let x = x.block(start..start + residuals.len())?;
         take_off(&x, solved, precise, residuals);
         add_leverages(&x, solved, leverages);
+        for (place, own) in leverages.iter_mut().enumerate() {
+            *own = (*own * weights.weight(start + place)).min(1.0);
+        }
         Ok::<(), Error>(())
     })?;
     Ok((residuals, leverages))
@@ -218,7 +240,6 @@ fn add_leverages(x: &DMatrix<f64>, solved: &Solved, found: &mut [f64]) {
             *sum += q * q;
         }
     }
-    found.iter_mut().for_each(|h| *h = h.min(1.0));
 }
 
 /// Quantile of Student's t; NaN without degrees of freedom.
@@ -378,18 +399,29 @@ impl LinearFit {
         y.iter().zip(&self.residuals).map(|(y, e)| y - e).collect()
     }
 
+    /// Sum over the rows of the variance of their prediction over σ².
+    fn squared_reach(&self) -> f64 {
+        match self.weights.is_empty() {
+            true => self.columns.len() as f64,
+            false => {
+                let rows = self.leverages.iter().enumerate();
+                rows.map(|(row, own)| own / self.weights.weight(row)).sum()
+            }
+        }
+    }
+
     /// How good it is.
     pub fn quality(&self, y: &[f64]) -> Quality {
         let (rows, count) = (self.rows as f64, self.columns.len() as f64);
         let total_df = rows - f64::from(u8::from(self.intercept)) - self.blocks.df;
         let total_ss = self.described();
-        let press = press(&self.residuals, &self.leverages);
+        let press = press(&self.weights.weigh(&self.residuals), &self.leverages);
         let fitted = y.iter().zip(&self.residuals).map(|(y, e)| y - e);
         let (low, high) = fitted.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
             (l.min(v), h.max(v))
         });
         let variance = self.variance();
-        let log_likelihood = log_likelihood(self.residual_ss, rows);
+        let log_likelihood = log_likelihood(self.residual_ss, rows) + 0.5 * self.weights.log_sum();
         let parameters = count + 1.0;
         let aic = 2.0 * parameters - 2.0 * log_likelihood;
         Quality {
@@ -397,7 +429,7 @@ impl LinearFit {
             r2_adjusted: 1.0 - variance / (total_ss / total_df),
             press,
             r2_predicted: 1.0 - press / total_ss,
-            adequate_precision: (high - low) / (count * variance / rows).sqrt(),
+            adequate_precision: (high - low) / (self.squared_reach() * variance / rows).sqrt(),
             sigma: variance.sqrt(),
             log_likelihood,
             aic,
@@ -413,7 +445,7 @@ pub(crate) fn log_likelihood(residual_ss: f64, rows: f64) -> f64 {
 }
 
 /// Akaike's criterion for small samples; infinite where it is not defined.
-pub(crate) fn small_sample(aic: f64, parameters: f64, rows: f64) -> f64 {
+pub fn small_sample(aic: f64, parameters: f64, rows: f64) -> f64 {
     match rows - parameters - 1.0 {
         left if left > 0.0 => aic + 2.0 * parameters * (parameters + 1.0) / left,
         _ => f64::INFINITY,

@@ -19,3 +19,4 @@ pub mod reduced;
 pub mod selection;
 pub mod straight_line;
 pub mod term_order;
+pub mod variance_groups;

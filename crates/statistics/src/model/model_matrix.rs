@@ -6,6 +6,7 @@ use crate::model::model_frame::{ModelFrame, prediction_rows};
 use crate::numbers::Numbers;
 use crate::runs::Runs;
 use crate::table::{Categories, Cells, Column, Table};
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -28,11 +29,28 @@ pub enum ModelMatrix<'a> {
         /// Rows of the table that are here, from 0.
         kept: &'a Runs,
     },
+    /// Rows of another times the roots of their weights.
+    Weighed {
+        /// The other.
+        of: &'a ModelMatrix<'a>,
+        /// The weights.
+        weights: &'a Weights,
+    },
 }
 
 impl<'a> From<&'a DMatrix<f64>> for ModelMatrix<'a> {
     fn from(x: &'a DMatrix<f64>) -> Self {
         Self::Held(x)
+    }
+}
+
+impl<'a> ModelMatrix<'a> {
+    /// Its rows times the roots of their weights.
+    pub fn weighed(&'a self, weights: &'a Weights) -> Self {
+        match weights.is_empty() {
+            true => *self,
+            false => Self::Weighed { of: self, weights },
+        }
     }
 }
 
@@ -42,6 +60,7 @@ impl ModelMatrix<'_> {
         match self {
             Self::Held(x) => x.nrows(),
             Self::Evaluated { kept, .. } => kept.len(),
+            Self::Weighed { of, .. } => of.rows(),
         }
     }
 
@@ -50,6 +69,7 @@ impl ModelMatrix<'_> {
         match self {
             Self::Held(x) => x.ncols(),
             Self::Evaluated { frame, .. } => frame.names.len(),
+            Self::Weighed { of, .. } => of.columns(),
         }
     }
 
@@ -60,7 +80,7 @@ impl ModelMatrix<'_> {
     pub fn whole(&self) -> Result<Cow<'_, DMatrix<f64>>, Error> {
         match self {
             Self::Held(x) => Ok(Cow::Borrowed(x)),
-            Self::Evaluated { .. } => self.block(0..self.rows()).map(Cow::Owned),
+            _ => self.block(0..self.rows()).map(Cow::Owned),
         }
     }
 
@@ -71,6 +91,14 @@ impl ModelMatrix<'_> {
     pub fn block(&self, rows: Range<usize>) -> Result<DMatrix<f64>, Error> {
         match self {
             Self::Held(x) => Ok(x.rows_range(rows).into_owned()),
+            Self::Weighed { of, weights } => {
+                let first = rows.start;
+                let mut x = of.block(rows)?;
+                let height = x.nrows().max(1);
+                let columns = x.as_mut_slice().chunks_exact_mut(height);
+                columns.for_each(|own| weights.weigh_from(first, own));
+                Ok(x)
+            }
             Self::Evaluated { frame, table, kept } => {
                 let columns = frame.columns();
                 let own = table

@@ -11,6 +11,7 @@ use crate::model::model_matrix::ModelMatrix;
 use crate::model::reduced::{Reduced, is_ordinary, reduce_evaluated, reduce_written};
 use crate::runs::Runs;
 use crate::table::Table;
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use std::borrow::Cow;
 
@@ -44,6 +45,8 @@ pub struct FormulaRows<'a> {
     pub kept: Runs,
     /// Rows with missing cells, which were left out, and the first missing column.
     pub left_out: Vec<(usize, String)>,
+    /// What the rows weigh.
+    pub weights: Weights,
     table: &'a Table,
     held: Option<(DMatrix<f64>, LostDigits)>,
 }
@@ -61,15 +64,21 @@ impl FormulaRows<'_> {
         }
     }
 
-    /// Its triangle.
+    /// The triangle of the weighted rows.
     ///
     /// # Errors
     /// Undefined values, with the row of the table.
     pub fn reduced(&self) -> Result<Reduced, Error> {
+        let y = self.weights.weigh(&self.y);
         match &self.held {
-            Some((x, lost)) => Ok(reduce_written(x, lost, &self.y)),
+            Some((x, lost)) if self.weights.is_empty() => Ok(reduce_written(x, lost, &y)),
+            Some((x, lost)) => {
+                let (x, lost) = self.weights.weigh_precisely(x, lost);
+                Ok(reduce_written(&x, &lost, &y))
+            }
             None => {
-                let reduced = reduce_evaluated(&self.x(), &self.y);
+                let x = self.x();
+                let reduced = reduce_evaluated(&x.weighed(&self.weights), &y);
                 reduced.map_err(|error| error.of_rows(|row| self.kept.get(row)))
             }
         }
@@ -124,6 +133,7 @@ pub fn formula_rows<'a>(
         y,
         kept,
         left_out,
+        weights: Weights::default(),
         table,
         held,
     })

@@ -8,6 +8,7 @@ use crate::model::linear_model::{log_likelihood, small_sample};
 use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::Reduced;
 use crate::model::term_order::{divides, powers_of_terms};
+use crate::weights::Weights;
 
 /// Where selection begins, and where it may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,6 +166,18 @@ pub fn select(frame: &ModelFrame, reduced: &Reduced, options: &SelectionOptions)
         });
     }
     selection
+}
+
+impl Selection {
+    /// The same with the criteria of rows that weigh differently: each lacks a constant.
+    pub fn weighed(mut self, weights: &Weights) -> Self {
+        let criteria = self
+            .steps
+            .iter_mut()
+            .filter_map(|own| own.criterion.as_mut());
+        criteria.for_each(|own| *own -= weights.log_sum());
+        self
+    }
 }
 
 impl Search<'_> {

@@ -4,6 +4,7 @@ use crate::distribution::tail::chi_squared_upper_quantile;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::{check_probability, check_sample};
 use crate::sample_error::SampleError;
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 
 /// Where to look for the power.
@@ -63,6 +64,21 @@ pub fn box_cox(
     design: &DMatrix<f64>,
     options: &BoxCoxOptions,
 ) -> Result<BoxCox, SampleError> {
+    box_cox_weighed(response, design, &Weights::default(), options)
+}
+
+/// [`box_cox`] of rows that weigh differently.
+///
+/// * `design`: times the roots of the weights
+///
+/// # Errors
+/// As [`box_cox`].
+pub fn box_cox_weighed(
+    response: &[f64],
+    design: &DMatrix<f64>,
+    weights: &Weights,
+    options: &BoxCoxOptions,
+) -> Result<BoxCox, SampleError> {
     if design.nrows() != response.len() {
         return Err(SampleError::lengths(
             "responses and rows of the design",
@@ -73,7 +89,7 @@ pub fn box_cox(
     let basis = orthonormal_basis(design);
     check_sample("the response", response, (basis.len() + 1).max(2))?;
     let residual_squares = |transformed: &[f64]| {
-        let mut rest = transformed.to_vec();
+        let mut rest = weights.weigh(transformed).into_owned();
         take_out(&basis, &mut rest);
         dot(&rest, &rest)
     };

@@ -5,6 +5,7 @@ use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::ModelMatrix;
 use crate::model::reduced::{Reduced, Solved, is_ordinary, join, joined, reduce, triangle_of_rows};
 use crate::model::selection::{SelectionOptions, select};
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -31,6 +32,8 @@ pub struct Parts<'a> {
     /// Unit (fruit) of each row, from 0 without gaps: rows of one unit stay together. Each row
     /// is one by itself if left out.
     pub units: Option<&'a [usize]>,
+    /// What the rows weigh, in the fits and in the mean of squared errors; all 1 if left out.
+    pub weights: Option<&'a Weights>,
 }
 
 /// Most parts whose rows are reduced once for all divisions.
@@ -54,7 +57,10 @@ pub fn cross_validate<'a>(
     selection: Option<&SelectionOptions>,
     parts: Parts,
 ) -> Result<Option<CrossValidation>, Error> {
-    let (x, rows) = (x.into(), y.len());
+    let equal = Weights::default();
+    let weights = parts.weights.unwrap_or(&equal);
+    let (x, rows, weighted) = (x.into(), y.len(), weights.weigh(y));
+    let (x, y) = (x.weighed(weights), (&*weighted, weights));
     let count = match parts.units {
         Some(units) => units.iter().max().map_or(0, |last| last + 1),
         None => rows,
@@ -78,9 +84,10 @@ pub fn cross_validate<'a>(
         true => from_parts(&x, y, folds, &part, &solved)?,
         false => from_rows(&*x.whole()?, y, folds, &part, &solved),
     };
+    let sum: f64 = (0..rows).map(|row| weights.weight(row)).sum();
     Ok(found.map(|(error, total)| CrossValidation {
         folds,
-        rms: (error / rows as f64).sqrt(),
+        rms: (error / sum).sqrt(),
         r2: 1.0 - error / total,
     }))
 }
@@ -102,7 +109,7 @@ type Squares = (f64, f64);
 /// Each division reduced by itself.
 fn from_rows(
     x: &DMatrix<f64>,
-    y: &[f64],
+    (y, weights): (&[f64], &Weights),
     folds: usize,
     part: &dyn Fn(usize) -> usize,
     solved: &dyn Fn(&Reduced) -> Option<Solved>,
@@ -114,10 +121,11 @@ fn from_rows(
         let train_x = x.select_rows(&kept);
         let train_y: Vec<f64> = kept.iter().map(|row| y[*row]).collect();
         let solved = solved(&reduce(&train_x, &train_y))?;
-        let mean = train_y.iter().sum::<f64>() / train_y.len() as f64;
+        let sum: f64 = kept.iter().map(|row| weights.root(*row) * y[*row]).sum();
+        let mean = sum / kept.iter().map(|row| weights.weight(*row)).sum::<f64>();
         for row in left_out {
             error += (y[row] - predicted(x, row, &solved)).powi(2);
-            total += (y[row] - mean).powi(2);
+            total += (y[row] - weights.root(row) * mean).powi(2);
         }
     }
     Some((error, total))
@@ -131,7 +139,7 @@ fn predicted(x: &DMatrix<f64>, row: usize, solved: &Solved) -> f64 {
 /// Rows of each part reduced once: the triangle of all but one follows from those of the parts.
 fn from_parts(
     x: &ModelMatrix,
-    y: &[f64],
+    (y, weights): (&[f64], &Weights),
     folds: usize,
     part: &(dyn Fn(usize) -> usize + Sync),
     solved: &dyn Fn(&Reduced) -> Option<Solved>,
@@ -153,10 +161,12 @@ fn from_parts(
         }
     }
     let by_part: Vec<Vec<f64>> = by_part.into_iter().map(|own| join(own, width)).collect();
-    let (mut counts, mut sums) = (vec![0; folds], vec![0.0; folds]);
+    let mut counts = vec![0; folds];
+    let (mut sums, mut totals) = (vec![0.0; folds], vec![0.0; folds]);
     for (row, y) in y.iter().enumerate() {
         counts[part(row)] += 1;
-        sums[part(row)] += y;
+        sums[part(row)] += weights.root(row) * y;
+        totals[part(row)] += weights.weight(row);
     }
     let mut fits = Vec::with_capacity(folds);
     for fold in 0..folds {
@@ -166,15 +176,16 @@ fn from_parts(
         let Some(solved) = solved(&joined(triangles.collect(), rows, width)) else {
             return Ok(None);
         };
-        let sum: f64 = others.map(|other| sums[other]).sum();
-        fits.push((solved, sum / rows as f64));
+        let sum: f64 = others.clone().map(|other| sums[other]).sum();
+        let total: f64 = others.map(|other| totals[other]).sum();
+        fits.push((solved, sum / total));
     }
     let squares = x.each_block(|own, x| {
         let (mut error, mut total) = (0.0, 0.0);
         for row in own.clone() {
             let (solved, mean) = &fits[part(row)];
             error += (y[row] - predicted(x, row - own.start, solved)).powi(2);
-            total += (y[row] - mean).powi(2);
+            total += (y[row] - weights.root(row) * mean).powi(2);
         }
         (error, total)
     })?;

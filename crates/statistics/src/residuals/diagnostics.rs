@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::model::linear_model::{LinearFit, coefficient, student_quantile};
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -38,6 +39,7 @@ pub struct Influence<'a> {
     observed: Cow<'a, [f64]>,
     residuals: Cow<'a, [f64]>,
     leverages: Cow<'a, [f64]>,
+    weights: Cow<'a, Weights>,
     variance: f64,
     df: f64,
     count: f64,
@@ -49,6 +51,7 @@ pub fn influence<'a>(fit: &'a LinearFit, y: &'a [f64]) -> Influence<'a> {
         observed: Cow::Borrowed(y),
         residuals: Cow::Borrowed(&fit.residuals),
         leverages: Cow::Borrowed(&fit.leverages),
+        weights: Cow::Borrowed(&fit.weights),
         variance: fit.variance(),
         df: fit.residual_df as f64,
         count: fit.columns.len() as f64,
@@ -64,6 +67,7 @@ impl Influence<'_> {
             count: fit.columns.len() as f64,
             residuals: Cow::Owned(fit.residuals),
             leverages: Cow::Owned(fit.leverages),
+            weights: Cow::Owned(fit.weights),
             variance,
             df,
         }
@@ -95,9 +99,11 @@ impl Influence<'_> {
     fn row(&self, row: usize) -> RowInfluence {
         let (residual, leverage) = (self.residuals[row], self.leverages[row]);
         let (observed, left) = (self.observed[row], 1.0 - leverage);
-        let standardised = residual / (self.variance * left).sqrt();
-        let without = (self.variance * self.df - residual * residual / left) / (self.df - 1.0);
-        let studentised = residual / (without * left).sqrt();
+        // Of one variance in all rows.
+        let weighted = residual * self.weights.root(row);
+        let standardised = weighted / (self.variance * left).sqrt();
+        let without = (self.variance * self.df - weighted * weighted / left) / (self.df - 1.0);
+        let studentised = weighted / (without * left).sqrt();
         RowInfluence {
             observed,
             fitted: observed - residual,
@@ -193,7 +199,8 @@ pub fn robust_covariance(fit: &LinearFit, x: &ModelMatrix) -> Result<Vec<Vec<f64
         let x = x.block(start..(start + BLOCK).min(x.rows()))?;
         let rows = fit.residuals.iter().zip(&fit.leverages).skip(start);
         for (row, (residual, leverage)) in rows.take(x.nrows()).enumerate() {
-            let weight = (residual / (1.0 - leverage)).powi(2);
+            let own = fit.weights.weight(start + row);
+            let weight = (own * residual / (1.0 - leverage)).powi(2);
             for a in 0..count {
                 let value = weight * x[(row, fit.columns[a])];
                 for b in 0..=a {

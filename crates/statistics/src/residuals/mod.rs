@@ -7,5 +7,4 @@ pub mod heteroscedasticity;
 pub mod normality;
 pub mod order;
 pub mod quantile_band;
-pub mod smooth;
 pub mod trend;

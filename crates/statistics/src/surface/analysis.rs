@@ -11,6 +11,7 @@ use crate::surface::coding::FactorCoding;
 use crate::surface::random_groups::RandomGroups;
 use crate::surface::terms::{Monomial, SurfaceTerms, monomial_name, monomial_value};
 use crate::table::Categories;
+use crate::weights::Weights;
 use nalgebra::DMatrix;
 use windfall_numerics::double_double::DoubleDouble;
 
@@ -305,5 +306,7 @@ pub fn surface_lack_of_fit(surface: &Surface, coded: &[Vec<f64>], y: &[f64]) -> 
     });
     let columns: Vec<usize> = (0..settings.ncols()).collect();
     let left = (surface.fit.residual_ss, surface.fit.residual_df);
-    lack_of_fit(&settings, &columns, y, left).ok().flatten()
+    lack_of_fit(&settings, &columns, (y, &Weights::default()), left)
+        .ok()
+        .flatten()
 }

@@ -1,13 +1,13 @@
 //! `windfall compare --measured … --predicted …`: predicted against measured.
 
 use crate::compare::group_outcome::statistics_error;
+use crate::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use crate::regress::findings::finding;
 use crate::rows::lines_text;
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::Data;
-use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use windfall_statistics::numbers::Numbers;
 
 /// What is asked.

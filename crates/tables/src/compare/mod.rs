@@ -2,6 +2,7 @@
 
 pub mod agreement;
 pub mod agreement_figure;
+mod compact_letters;
 mod figures;
 pub mod group_outcome;
 pub mod outcome;

@@ -1,5 +1,6 @@
 //! `windfall compare`: groups of a table against each other.
 
+use crate::compare::compact_letters::compact_letters;
 use crate::compare::figures::draw_comparison;
 use crate::compare::group_outcome::{missing_findings, row_count, statistics_error, summaries};
 use crate::compare::outcome::{CompareOutcome, LetteredGroup, PairOutcome, StatisticTest};
@@ -19,7 +20,6 @@ use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, DataFile, Wanted, open_data};
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::accurate_sum::mean;
-use windfall_statistics::compare::compact_letters::compact_letters;
 use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
 use windfall_statistics::compare::group_summary::{Group, GroupSummary, Groups, split_groups};
 use windfall_statistics::compare::one_way_anova::{FTest, one_way_anova, welch_anova};

@@ -3,6 +3,7 @@
 use crate::figures::quantiles::{
     Held, OrderedValue, QuantileWords, ordered_values, quantile_panel,
 };
+use crate::figures::smooth::lowess;
 use crate::figures::thinning::{drawn_rows, largest};
 use crate::figures::words::{cell, percent};
 use windfall_draw::files::{Painting, file_name};
@@ -12,7 +13,6 @@ use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::column_title::column_title;
 use windfall_statistics::residuals::diagnostics::RowInfluence;
-use windfall_statistics::residuals::smooth::lowess;
 
 /// Size of a panel; px.
 const SIZE: (f64, f64) = (196.0, 176.0);

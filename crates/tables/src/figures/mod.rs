@@ -6,5 +6,6 @@ pub mod effects;
 pub mod groups;
 pub mod quantiles;
 pub mod settings;
+mod smooth;
 pub mod thinning;
 pub mod words;

@@ -21,7 +21,7 @@ use windfall_files::table::data::Data;
 use windfall_statistics::coefficient::Estimated;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::constraint::VarianceParameter;
-use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed};
+use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_weighed};
 use windfall_statistics::mixed::inference::{
     FTest, VarianceUncertainty, coefficient_tests, estimate, f_test, picking_contrast,
     variance_uncertainty,
@@ -44,6 +44,7 @@ use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
 use windfall_statistics::model::reduced::{Aliased, reduce};
 use windfall_statistics::runs::Runs;
+use windfall_statistics::weights::Weights;
 
 struct Fitted {
     rows: ModelRows,
@@ -68,7 +69,7 @@ pub fn regress_mixed(
 ) -> Result<MixedOutcome, Error> {
     check(request)?;
     let (kept, left_out) =
-        complete_rows(formula, &data.table, &[]).map_err(|error| data.told(error))?;
+        complete_rows(formula, &data.table, &request.also()).map_err(|error| data.told(error))?;
     let table = chosen_rows(&data.table, &kept).into_owned();
     let chosen = Data {
         path: data.path.clone(),
@@ -133,6 +134,7 @@ pub fn regress_mixed(
             .iter()
             .map(|t| (t.term.name.clone(), t.term.groups))
             .collect(),
+        weights: request.weights.clone(),
         terms,
         covariance: fit.covariance_rows(),
         ranges,
@@ -166,6 +168,11 @@ fn check(request: &RegressRequest) -> Result<(), Error> {
         let problem = "terms of mixed models are not selected here: compare models fitted by \
                        --likelihood ml by their criteria";
         return Err(unusable("--select", problem));
+    }
+    if request.variance.is_some() {
+        let problem = "variances by level are not estimated beside random effects: leave out one \
+                       of them, or model a transformed response such as its logarithm";
+        return Err(unusable("--variance", problem));
     }
     if request.robust {
         let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
@@ -285,7 +292,11 @@ fn fit(
         method: request.likelihood,
     };
     let x = rows.x.select_columns(&columns);
-    let fit = fit_mixed(&rows.y, &x, &names, &numbers, &options)
+    let weights = match &request.weights {
+        Some(name) => Weights::of_column(&data.table, name, 0..rows.y.len()).map_err(told)?,
+        None => Weights::default(),
+    };
+    let fit = fit_mixed_weighed((&rows.y, &weights), &x, &names, &numbers, &options)
         .map_err(|error| told(StatisticsError::Mixed(error)))?;
     Ok(Fitted {
         rows,

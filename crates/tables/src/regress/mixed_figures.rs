@@ -66,14 +66,15 @@ pub(crate) fn mixed_paintings(own: &MixedShown) -> Result<Vec<Painting>, Error> 
 /// Conditional residuals: what is left after fixed effects and those of the groups.
 fn residuals(own: &MixedShown) -> Result<Painting, Error> {
     let fit = own.fit;
-    let rows = fit.residuals.iter().zip(&fit.fitted).zip(own.observed);
-    let rows = rows.map(|((residual, fitted), observed)| RowInfluence {
+    let scaled = |row: usize| fit.residuals[row] * fit.model.weights().root(row) / fit.residual_sd;
+    let rows = fit.fitted.iter().zip(own.observed).enumerate();
+    let rows = rows.map(|(row, (fitted, observed))| RowInfluence {
         observed: *observed,
         fitted: *fitted,
-        residual: *residual,
+        residual: fit.residuals[row],
         leverage: f64::NAN,
-        standardised: residual / fit.residual_sd,
-        studentised: residual / fit.residual_sd,
+        standardised: scaled(row),
+        studentised: scaled(row),
         cook: f64::NAN,
         dffits: f64::NAN,
     });
@@ -99,7 +100,7 @@ fn by_group(own: &MixedShown, term: &RandomTerm) -> GridPanel {
     // Names stand at 0, 1, 2 …; groups without names are counted from 1.
     let shift = if few { 0.0 } else { 1.0 };
     let dots = drawn.iter().map(|row| {
-        let value = fit.residuals[*row] / fit.residual_sd;
+        let value = fit.residuals[*row] * fit.model.weights().root(*row) / fit.residual_sd;
         (term.group[*row] as f64 + shift, value)
     });
     let zero = vec![(0.0, 0.0)];

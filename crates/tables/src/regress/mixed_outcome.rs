@@ -71,6 +71,8 @@ pub struct MixedOutcome {
     pub count: RowCount,
     /// Groups of each random term.
     pub groups: Vec<(String, usize)>,
+    /// Column of the weights of rows.
+    pub weights: Option<String>,
     /// Fixed effects.
     pub terms: Vec<Coefficient>,
     /// Covariance of the fixed effects, in the order of `terms`.

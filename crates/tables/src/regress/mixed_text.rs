@@ -3,7 +3,7 @@
 use crate::regress::means::text::{csv_of_means, means_text};
 use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome};
 use crate::regress::outcome::{original_cell, original_text};
-use crate::regress::text::csv_of_terms;
+use crate::regress::text::{csv_of_terms, weights_text};
 use crate::rows::rows_text;
 use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, text_of_rows};
@@ -96,6 +96,9 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         outcome.method,
         formula(!whole),
     );
+    if let Some(name) = &outcome.weights {
+        text += &(weights_text(name).trim_start().to_owned() + "\n");
+    }
     text += &format!(
         "{}\n\nTests of the terms, each after all others ({}):\n{}\n\n\
          Standard deviations and correlations, with profile intervals of the same likelihood:\n{}\n\n",

@@ -1,5 +1,6 @@
 //! `windfall regress`: linear and mixed models.
 
+mod after;
 mod figures;
 pub mod findings;
 pub mod means;
@@ -12,3 +13,4 @@ pub mod request;
 pub mod residuals;
 pub mod run;
 pub mod text;
+pub mod variances;

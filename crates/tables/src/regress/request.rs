@@ -40,7 +40,7 @@ pub struct RegressRequest {
     /// slope), 'variety/fruit' (fruit within variety); makes the model a mixed one; may be repeated
     #[cfg_attr(feature = "clap", arg(long = "random", value_name = "GROUPS"))]
     pub random: Vec<String>,
-    /// What is maximised where there are random effects
+    /// What is maximised where there are random effects, or variances by level
     #[cfg_attr(feature = "clap", arg(long, default_value = "reml", value_parser = likelihood()))]
     pub likelihood: MixedMethod,
     /// How degrees of freedom are found where there are random effects
@@ -49,6 +49,16 @@ pub struct RegressRequest {
         arg(long, value_enum, default_value_t, value_name = "METHOD")
     )]
     pub df: FreedomMethod,
+    /// Column of weights of the rows, such as the number of impacts behind each mean: the variance
+    /// of a row is σ² over its weight
+    #[cfg_attr(feature = "clap", arg(long, value_name = "COLUMN"))]
+    pub weights: Option<String>,
+    /// Category whose levels have residual variances of their own; estimated by --likelihood
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "COLUMN", conflicts_with = "weights")
+    )]
+    pub variance: Option<String>,
     /// Select terms
     #[cfg_attr(feature = "clap", arg(long, value_name = "HOW", value_parser = direction()))]
     pub select: Option<Direction>,
@@ -130,6 +140,8 @@ impl RegressRequest {
             random: Vec::new(),
             likelihood: MixedMethod::Reml,
             df: FreedomMethod::Satterthwaite,
+            weights: None,
+            variance: None,
             select: None,
             criterion: SelectBy::P,
             p_remove: 0.1,
@@ -147,6 +159,12 @@ impl RegressRequest {
             figures: None,
             reading: ReadingOptions::default(),
         }
+    }
+
+    /// Columns beside those of the formula whose cells must not be missing.
+    pub(crate) fn also(&self) -> Vec<String> {
+        let also = self.fold_by.iter().chain(&self.weights);
+        also.chain(&self.variance).cloned().collect()
     }
 
     /// The table that is to be predicted, if there is one.

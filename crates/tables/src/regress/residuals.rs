@@ -6,11 +6,12 @@ use windfall_files::text::columns::given;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{number, probability};
 
+use crate::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use serde::Serialize;
-use windfall_statistics::compare::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
+use std::borrow::Cow;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_rows::FormulaRows;
-use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox};
+use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox_weighed};
 use windfall_statistics::residuals::heteroscedasticity::koenker;
 use windfall_statistics::residuals::normality::{
     SHAPIRO_WILK_LARGEST, anderson_darling, shapiro_wilk,
@@ -87,7 +88,12 @@ pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
         return outcome;
     };
     let x = x.select_columns(&fit.columns);
-    let residuals = &fit.residuals;
+    // Of one variance, and the columns with them; what the variance may change along is not.
+    let residuals = &*fit.weights.weigh(&fit.residuals);
+    let weighed = match fit.weights.is_empty() {
+        true => Cow::Borrowed(&x),
+        false => Cow::Owned(fit.weights.weigh_columns(&x)),
+    };
     let (normality, normal) = match residuals.len() <= SHAPIRO_WILK_LARGEST {
         true => ("normal (Shapiro-Wilk)", shapiro_wilk(residuals)),
         false => ("normal (Anderson-Darling)", anderson_darling(residuals)),
@@ -103,7 +109,7 @@ pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
         ),
         (
             order,
-            durbin_watson(residuals, &x)
+            durbin_watson(residuals, &weighed)
                 .ok()
                 .map(|t| (t.statistic, t.p)),
         ),
@@ -117,7 +123,7 @@ pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
         confidence: fit.confidence,
         ..BoxCoxOptions::default()
     };
-    outcome.box_cox = box_cox(&rows.y, &x, &options).ok();
+    outcome.box_cox = box_cox_weighed(&rows.y, &weighed, &fit.weights, &options).ok();
     outcome
 }
 

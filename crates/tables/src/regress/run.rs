@@ -1,21 +1,21 @@
 //! `windfall regress`: a table and a formula → a linear model.
 
+use crate::regress::after::{means, predictions};
 use crate::regress::figures::draw_linear;
 use crate::regress::findings::{
     aliased_findings, code_findings, extrapolated, finding, fit_findings, lack_finding,
     left_out_finding, row_count,
 };
 use crate::regress::means::outcome::MeansOutcome;
-use crate::regress::means::run::{Model, means_of};
 use crate::regress::mixed::{MixedOutcome, regress_mixed};
 use crate::regress::outcome::{
-    PredictionOutcome, RangeOutcome, RowOutcome, RowOutcomes, StepOutcome, original_prediction,
-    ranges_of,
+    PredictionOutcome, RangeOutcome, RowOutcome, RowOutcomes, StepOutcome, ranges_of,
 };
 use crate::regress::request::{AnovaType, Contrast, Criterion, Direction, RegressRequest};
 use crate::regress::residuals::{ResidualOutcome, residual_findings, residual_tests};
+use crate::regress::variances::outcome::VariancesOutcome;
+use crate::regress::variances::run::{ByLevel, Tested, check_variance, weigh_levels};
 use crate::rows::RowCount;
-use nalgebra::DMatrix;
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
@@ -27,19 +27,17 @@ use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};
 use windfall_statistics::model::formula_syntax::spelling;
-use windfall_statistics::model::linear_model::{
-    LinearFit, Quality, WholeModel, fit_reduced, predict,
-};
-use windfall_statistics::model::mean_contrasts::joint_test;
-use windfall_statistics::model::model_frame::prediction_rows;
+use windfall_statistics::model::linear_model::{LinearFit, Quality, WholeModel, fit_weighted};
 use windfall_statistics::model::model_rows::{FormulaRows, formula_rows, names_of};
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::reduced::Reduced;
 use windfall_statistics::model::selection::{Selection, select};
+use windfall_statistics::model::variance_groups::LevelInference;
 use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, cross_validate};
 use windfall_statistics::residuals::diagnostics::{
     Inflation, Influence, inflation, influence, robust_coefficients, robust_covariance,
 };
+use windfall_statistics::weights::Weights;
 
 /// A fitted linear model.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -51,6 +49,10 @@ pub struct RegressOutcome {
     /// Rows that were used and left out, by the levels of the model's first category.
     #[serde(flatten)]
     pub count: RowCount,
+    /// Column of the weights of rows.
+    pub weights: Option<String>,
+    /// Residual variances by level, where they differ.
+    pub variances: Option<VariancesOutcome>,
     /// Estimates.
     pub terms: Vec<Coefficient>,
     /// Whether their standard errors are HC3.
@@ -151,7 +153,7 @@ pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
 
 /// Columns that a model needs.
 fn wanted(request: &RegressRequest, formula: &Formula) -> Wanted {
-    let also: Vec<String> = request.fold_by.iter().cloned().collect();
+    let also = request.also();
     Wanted {
         named: names_of(formula, &also),
         // Questions after the model may name others.
@@ -165,29 +167,44 @@ fn regress_linear(
     data: &Data,
     formula: &Formula,
 ) -> Result<RegressOutcome, Error> {
-    let also: Vec<String> = request.fold_by.iter().cloned().collect();
     let told = |error| data.told(error);
-    let rows = formula_rows(formula, &data.table, request.contrasts, &also).map_err(told)?;
+    let rows = formula_rows(formula, &data.table, request.contrasts, &request.also());
+    let mut rows = rows.map_err(told)?;
+    if let Some(name) = &request.weights {
+        rows.weights = Weights::of_column(&data.table, name, rows.kept.iter()).map_err(told)?;
+    }
+    let levels = weigh_levels(request, data, &mut rows)?;
     let reduced = rows.reduced().map_err(told)?;
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
     let selection = match &request.selection() {
-        Some(options) => select(&rows.frame, &reduced, options),
+        Some(options) => select(&rows.frame, &reduced, options).weighed(&rows.weights),
         None => Selection {
             terms: every,
             steps: Vec::new(),
         },
     };
     let wanted = columns_of(&rows, &selection.terms);
-    let fit = fit_reduced(
-        &rows.frame,
-        rows.x(),
-        &rows.y,
-        &reduced,
-        &wanted,
-        request.confidence,
-    )
-    .map_err(told)?;
-    let mut outcome = outcome(request, data, formula, &rows, &reduced, &selection, &fit)?;
+    let (x, frame) = (rows.x(), &rows.frame);
+    let weighed = (x, &rows.y[..], &rows.weights);
+    let fit = fit_weighted(frame, weighed, &reduced, &wanted, request.confidence);
+    let fit = fit.map_err(told)?;
+    let inference = levels.as_ref().map(|own| own.inference(&rows, &fit));
+    let inference = inference.transpose().map_err(told)?;
+    let inferred = (&fit, inference.as_ref());
+    let mut outcome = outcome(
+        request, data, formula, &rows, &reduced, &selection, inferred,
+    )?;
+    if let (Some(levels), Some(inference)) = (&levels, &inference) {
+        let own = (&rows, &reduced, &fit);
+        infer_levels(
+            request,
+            data,
+            formula,
+            own,
+            (levels, inference),
+            &mut outcome,
+        )?;
+    }
     let lines = data.lines.at(&rows.kept);
     if let Some(folder) = &request.figures {
         let shown = (outcome.response.as_str(), &lines, &outcome.covariance[..]);
@@ -197,8 +214,50 @@ fn regress_linear(
     Ok(outcome)
 }
 
+/// What follows from the variances of levels, in the place of what holds for known ones.
+fn infer_levels(
+    request: &RegressRequest,
+    data: &Data,
+    formula: &Formula,
+    own: Tested,
+    (levels, inference): (&ByLevel, &LevelInference),
+    outcome: &mut RegressOutcome,
+) -> Result<(), Error> {
+    let told = |error| data.told(error);
+    let (rows, _, fit) = own;
+    outcome.terms = inference.coefficients(fit);
+    let summed = match request.anova == AnovaType::Partial && rows.frame.has_categories() {
+        true => Some(summed_rows(request, data, formula, rows)?),
+        false => None,
+    };
+    let summed = summed.map(|rows| {
+        let reduced = rows.reduced()?;
+        let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
+        let wanted = columns_of(&rows, &every);
+        let weighed = (rows.x(), &rows.y[..], &rows.weights);
+        let fit = fit_weighted(&rows.frame, weighed, &reduced, &wanted, request.confidence)?;
+        Ok((rows, reduced, fit))
+    });
+    let summed = summed.transpose().map_err(told)?;
+    let tested = summed
+        .as_ref()
+        .map_or(own, |(rows, reduced, fit)| (rows, reduced, fit));
+    let tests = (&mut outcome.anova[..], &mut outcome.model);
+    let found = levels.tests(request, tested, tests).map_err(told)?;
+    levels.qualify(&mut outcome.quality, fit);
+    outcome.variances = Some(found);
+    if let Some(asked) = request.asked()? {
+        let scale = formula.response.as_ref();
+        let scale = scale.and_then(|own| OriginalScale::of(own, &data.table, &rows.kept));
+        let inference = (inference, request.confidence);
+        outcome.predictions = levels.predictions(&asked, scale.as_ref(), rows, inference)?;
+    }
+    Ok(())
+}
+
 fn check(request: &RegressRequest) -> Result<(), Error> {
     check_part("--confidence", request.confidence)?;
+    check_variance(request)?;
     let Some(selection) = request.selection() else {
         return Ok(());
     };
@@ -238,7 +297,7 @@ fn outcome(
     rows: &FormulaRows,
     reduced: &Reduced,
     selection: &Selection,
-    fit: &LinearFit,
+    (fit, inference): (&LinearFit, Option<&LevelInference>),
 ) -> Result<RegressOutcome, Error> {
     let told = |error| data.told(error);
     let lines = data.lines.at(&rows.kept);
@@ -256,7 +315,7 @@ fn outcome(
     findings.extend(code_findings(&rows.frame, &data.table));
     findings.extend(aliased_findings(&rows.frame, &fit.aliased));
     findings.extend(fit_findings(fit, &influence, &vif, &lines, &steps));
-    if request.folds > 0 && validation.is_none() {
+    if request.folds > 0 && validation.is_none() && request.variance.is_none() {
         findings.push(finding(
             "no-cross-validation",
             "a part without some rows leaves a coefficient without an estimate: rows cannot be \
@@ -265,9 +324,11 @@ fn outcome(
         ));
     }
     let left = (fit.residual_ss, fit.residual_df);
-    let lack_of_fit = lack_of_fit(rows.x(), &fit.columns, &rows.y, left).map_err(told)?;
+    let lack_of_fit =
+        lack_of_fit(rows.x(), &fit.columns, (&rows.y, &rows.weights), left).map_err(told)?;
     findings.extend(lack_finding(lack_of_fit.as_ref()));
-    let (means, not_estimable) = means(request, data, formula, rows, (fit, &covariance))?;
+    let (means, not_estimable) =
+        means(request, data, formula, rows, (fit, &covariance), inference)?;
     findings.extend(not_estimable);
     let (asked, ranges) = (
         request.asked()?,
@@ -288,6 +349,8 @@ fn outcome(
         formula: formula_of(formula, rows, selection),
         response: formula.response.as_ref().map(spelling).unwrap_or_default(),
         count: row_count(&rows.frame, &data.table, &rows.left_out),
+        weights: request.weights.clone(),
+        variances: None,
         terms,
         robust: request.robust,
         covariance,
@@ -324,13 +387,14 @@ fn validated(
     selection: &Selection,
 ) -> Result<Option<CrossValidation>, Error> {
     let units = units_of(request, data, rows)?;
-    if request.folds == 0 {
+    if request.folds == 0 || request.variance.is_some() {
         return Ok(None);
     }
     let parts = Parts {
         folds: request.folds,
         seed: request.seed,
         units: units.as_deref(),
+        weights: Some(&rows.weights),
     };
     let (x, terms, options) = (rows.x(), &selection.terms, request.selection());
     let found = cross_validate(&rows.frame, x, &rows.y, terms, options.as_ref(), parts);
@@ -371,13 +435,24 @@ fn variance_of(
 ) -> Result<Vec<AnovaRow>, Error> {
     let (terms, kind) = (&selection.terms, request.anova);
     if kind == AnovaType::Partial && rows.frame.has_categories() {
-        let also: Vec<String> = request.fold_by.iter().cloned().collect();
-        let told = |error| data.told(error);
-        let summed = formula_rows(formula, &data.table, Contrast::Sum, &also).map_err(told)?;
-        let reduced = summed.reduced().map_err(told)?;
+        let summed = summed_rows(request, data, formula, rows)?;
+        let reduced = summed.reduced().map_err(|error| data.told(error))?;
         return Ok(anova(&summed.frame, &reduced, terms, kind).rows);
     }
     Ok(anova(&rows.frame, reduced, terms, kind).rows)
+}
+
+/// Rows of a model with categories by sum contrasts.
+fn summed_rows<'a>(
+    request: &RegressRequest,
+    data: &'a Data,
+    formula: &Formula,
+    rows: &FormulaRows,
+) -> Result<FormulaRows<'a>, Error> {
+    let summed = formula_rows(formula, &data.table, Contrast::Sum, &request.also());
+    let mut summed = summed.map_err(|error| data.told(error))?;
+    summed.weights = rows.weights.clone();
+    Ok(summed)
 }
 
 /// Covariance of the estimates, in rows.
@@ -413,71 +488,4 @@ fn formula_of(formula: &Formula, rows: &FormulaRows, selection: &Selection) -> S
         .map(|t| rows.frame.terms[*t].name.clone());
     let terms: Vec<String> = std::iter::once(intercept.to_owned()).chain(terms).collect();
     format!("{response} ~ {}", terms.join(" + "))
-}
-
-fn means(
-    request: &RegressRequest,
-    data: &Data,
-    formula: &Formula,
-    rows: &FormulaRows,
-    (fit, covariance): (&LinearFit, &[Vec<f64>]),
-) -> Result<(Vec<MeansOutcome>, Vec<FindingOutcome>), Error> {
-    if request.after.is_empty() {
-        return Ok((Vec::new(), Vec::new()));
-    }
-    if request.select.is_some() {
-        let problem = "means of a model whose terms were selected leave out what the selection \
-                       costs: fit the chosen terms without --select";
-        return Err(unusable("--means", problem));
-    }
-    let estimate = |weights: &[f64]| fit.estimate(weights, covariance);
-    let of_sums = |sums: &DMatrix<f64>| {
-        let own = sums.select_columns(&fit.columns);
-        let size = covariance.len();
-        let inner = DMatrix::from_fn(size, size, |i, j| covariance[i][j]);
-        &own * inner * own.transpose()
-    };
-    let model = Model {
-        frame: &rows.frame,
-        aliased: &fit.aliased,
-        table: &data.table,
-        kept: &rows.kept,
-        response: formula.response.as_ref(),
-        estimate: &estimate,
-        covariance: &of_sums,
-        test: &|sums| {
-            let values = sums.row_iter().map(|row| {
-                let row: Vec<f64> = row.iter().copied().collect();
-                estimate(&row).value
-            });
-            let values: Vec<f64> = values.collect();
-            joint_test(&values, of_sums(sums), fit.residual_df as f64)
-        },
-    };
-    means_of(&model, &request.after, request.confidence)
-}
-
-fn predictions(
-    asked: Option<&Data>,
-    scale: Option<&OriginalScale>,
-    rows: &FormulaRows,
-    fit: &LinearFit,
-) -> Result<Vec<PredictionOutcome>, Error> {
-    let Some(asked) = asked else {
-        return Ok(Vec::new());
-    };
-    let x = prediction_rows(&rows.frame, &asked.table).map_err(|error| asked.told(error))?;
-    let found = predict(fit, &x).into_iter().zip(asked.lines.iter());
-    Ok(found
-        .map(|(prediction, line)| PredictionOutcome {
-            line,
-            original: original_prediction(
-                scale,
-                prediction.mean,
-                (prediction.mean_low, prediction.mean_high),
-                (prediction.low, prediction.high),
-            ),
-            prediction,
-        })
-        .collect())
 }

@@ -4,6 +4,7 @@ use crate::regress::means::text::{csv_of_means, means_text};
 use crate::regress::outcome::{PredictionOutcome, StepOutcome, original_cell, original_text};
 use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
+use crate::regress::variances::text::variances_text;
 use crate::rows::rows_text;
 use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, given, text_of_rows};
@@ -141,8 +142,15 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
         text += &(steps_text(&outcome.steps) + "\n\n");
     }
     text += &text_of_rows(&outcome.terms, &TERMS, &[0]);
+    if let Some(name) = &outcome.weights {
+        text += &weights_text(name);
+    }
     if outcome.robust {
         text += "\nStandard errors that hold for unequal variances (HC3).\n";
+    }
+    if let Some(variances) = &outcome.variances {
+        text += &variances_text(outcome, variances);
+        return text + &rest_text(outcome);
     }
     text += &format!(
         "\n\n{}\nresidual standard deviation {} on {} degrees of freedom\n\
@@ -185,7 +193,12 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
         let line = format!("variance inflation: {}", factors.join(", "));
         text += &(paragraph(&line, 2) + "\n");
     }
-    text += &residuals_text(&outcome.residuals);
+    text + &rest_text(outcome)
+}
+
+/// Residuals, means, predictions and findings.
+fn rest_text(outcome: &RegressOutcome) -> String {
+    let mut text = residuals_text(&outcome.residuals);
     text += &means_text(&outcome.means);
     if !outcome.predictions.is_empty() {
         let table = text_of_rows(&outcome.predictions, &PREDICTIONS, &[]);
@@ -197,6 +210,14 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
         text += &original_text(&original);
     }
     text + &findings_list(&outcome.findings)
+}
+
+/// What weights mean.
+pub(crate) fn weights_text(name: &str) -> String {
+    format!(
+        "\nRows weigh {name}: the variance of a row is the residual variance over its weight. Tests\n\
+         of residuals are of residuals times its root, a further observation has weight 1.\n"
+    )
 }
 
 fn steps_text(steps: &[StepOutcome]) -> String {

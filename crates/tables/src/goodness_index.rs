@@ -1,8 +1,8 @@
 //! How far predictions lie from what was measured.
 
-use crate::accurate_sum::{mean, squares_about};
-use crate::sample::check_pairs;
-use crate::sample_error::SampleError;
+use windfall_statistics::accurate_sum::{mean, squares_about};
+use windfall_statistics::sample::check_pairs;
+use windfall_statistics::sample_error::SampleError;
 
 /// What has to be said beside the two χ² of [`GoodnessIndex`].
 pub const CHI_SQUARED_CAVEAT: &str = "the chi-square here is an index of distance and not a test: \

@@ -1,9 +1,9 @@
 //! Half-width of a t interval, which is known only after the study: its mean, and the one that
 //! is kept with a stated probability.
 
-use crate::distribution::tail::chi_squared_upper_quantile;
 use crate::power::interval_quantile;
 use libm::lgamma;
+use windfall_statistics::distribution::tail::chi_squared_upper_quantile;
 
 /// Expected value of √(χ²/df): what a standard deviation with df degrees of freedom is on
 /// average, in parts of the true one.

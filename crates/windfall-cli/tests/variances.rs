@@ -1,0 +1,275 @@
+//! Weights of rows and variances by level in `windfall regress`.
+
+#![allow(clippy::unwrap_used)]
+
+use crate::on_table::{self, close};
+use serde_json::Value;
+
+const DENTS: &str = "variety,fruit,V,n,depth\nGala,a,0.2,3,2.91\nGala,a,0.4,5,3.87\n\
+    Gala,b,0.3,1,3.95\nGala,b,0.7,4,5.62\nFuji,c,0.2,6,3.12\nFuji,c,0.5,2,4.81\n\
+    Fuji,d,0.6,8,5.05\nIdared,e,0.3,3,4.6\nIdared,e,0.4,7,4.71\nIdared,f,0.6,2,6.49\n\
+    Idared,f,0.7,5,6.02\nIdared,f,0.1,1,2.44\n";
+
+/// Three groups of 6, 9 and 5.
+const GROUPS: &str = "g,x,y\na,1,2.1\na,2,3.4\na,3,1.9\na,4,2.2\na,5,4.0\na,6,2.8\nb,1,5.1\n\
+    b,2,7.9\nb,3,3.2\nb,4,6.6\nb,5,9.4\nb,6,4.8\nb,7,5.5\nb,8,7.1\nb,9,2.9\nc,2,6.1\nc,4,6.6\n\
+    c,5,6.2\nc,7,7.3\nc,8,7.0\n";
+
+fn json(table: &str, arguments: &[&str]) -> Value {
+    on_table::json(table, &[&["regress", "t.csv"], arguments].concat())
+}
+
+fn refused(table: &str, arguments: &[&str]) -> String {
+    let (status, _, told) = on_table::run(table, &[&["regress", "t.csv"], arguments].concat());
+    assert_ne!(status, Some(0), "{arguments:?}");
+    told
+}
+
+/// Column of a list of objects.
+fn column(rows: &Value, name: &str) -> Vec<Value> {
+    let rows = rows.as_array().unwrap().iter();
+    rows.map(|row| row[name].clone()).collect()
+}
+
+fn all_close(found: &[Value], expected: &[f64], limit: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        close(found, *expected, limit);
+    }
+}
+
+const WEIGHED: [&str; 6] = [
+    "--formula",
+    "depth ~ V + variety",
+    "--weights",
+    "n",
+    "--folds",
+    "12",
+];
+
+/// R 4.2: `lm(depth ~ V + variety, weights = n)`, `rstandard`, `cooks.distance`, `rstudent`,
+/// `hatvalues`, car's `Anova`, sandwich's `vcovHC`, `predict(…, weights = 1)`.
+#[test]
+fn reference_weights_of_a_linear_model() {
+    let found = json(DENTS, &[&WEIGHED[..], &["--predict", "t.csv"]].concat());
+    let estimates = [
+        2.066385386181877,
+        5.096833403012853,
+        -0.108073878272127,
+        0.653998840173165,
+    ];
+    all_close(&column(&found["terms"], "estimate"), &estimates, 1e-12);
+    let errors = [
+        0.255690798187207,
+        0.474454254640745,
+        0.222993553606205,
+        0.205855490166518,
+    ];
+    all_close(&column(&found["terms"], "se"), &errors, 1e-12);
+    close(&found["sigma"], 0.59720587046469, 1e-12);
+    close(&found["r2"], 0.945791709961525, 1e-12);
+    close(&found["r2_adjusted"], 0.925463601197097, 1e-12);
+    close(&found["log_likelihood"], -1.40565100699114, 1e-12);
+    close(&found["aic"], 12.8113020139823, 1e-12);
+    close(&found["bic"], 15.2358352629223, 1e-12);
+    close(&found["press"], 5.11366019980691, 1e-12);
+    let row = &found["influence"][3];
+    close(&row["standardised"], 0.436268577432379, 1e-12);
+    close(&row["cook"], 0.0439900093199053, 1e-12);
+    close(&row["studentised"], 0.413034776568829, 1e-12);
+    close(&row["leverage"], 0.480384091491456, 1e-12);
+    close(&row["residual"], 0.093905109981254, 1e-11);
+    close(&row["fitted"], 5.62 - 0.093905109981254, 1e-12);
+    let sums = [41.15857422045, 5.51944249953];
+    all_close(&column(&found["anova"], "ss"), &sums, 1e-11);
+    let f = [115.401694445616, 7.7377925366034];
+    all_close(&column(&found["anova"], "f"), &f, 1e-12);
+    // A further observation has weight 1.
+    let prediction = &found["predictions"][0];
+    close(&prediction["predicted"], 2.97767818851232, 1e-12);
+    close(&prediction["low"], 1.52491334638239, 1e-12);
+    close(&prediction["high"], 4.43044303064225, 1e-12);
+    let robust = json(DENTS, &[&WEIGHED[..], &["--robust"]].concat());
+    let errors = [
+        0.219911803128377,
+        0.508468269206452,
+        0.153884925384866,
+        0.215437586645112,
+    ];
+    all_close(&column(&robust["terms"], "se"), &errors, 1e-12);
+}
+
+/// Parts of single rows: their errors are those of PRESS. The weights sum to 47.
+#[test]
+fn closed_form_cross_validation_is_weighed() {
+    let found = json(DENTS, &WEIGHED);
+    let press = found["press"].as_f64().unwrap();
+    let validation = &found["cross_validation"];
+    close(&validation["rms"], (press / 47.0).sqrt(), 1e-10);
+}
+
+/// A row of weight 3 counts as three rows of its value do in estimates and pure error.
+#[test]
+fn conserves_rows_that_are_repeated() {
+    let once = "x,y,w\n1,2,3\n1,4,1\n2,5,2\n3,4,1\n3,9,1\n4,8,2\n";
+    let often = "x,y\n1,2\n1,2\n1,2\n1,4\n2,5\n2,5\n3,4\n3,9\n4,8\n4,8\n";
+    let weighed = json(once, &["--formula", "y ~ x", "--weights", "w"]);
+    let repeated = json(often, &["--formula", "y ~ x"]);
+    let estimates = column(&repeated["terms"], "estimate");
+    let estimates: Vec<f64> = estimates.iter().map(|own| own.as_f64().unwrap()).collect();
+    all_close(&column(&weighed["terms"], "estimate"), &estimates, 1e-12);
+    for sum in ["residual", "total"] {
+        let expected = repeated[sum]["ss"].as_f64().unwrap();
+        close(&weighed[sum]["ss"], expected, 1e-12);
+    }
+    let pure = |found: &Value| found["lack_of_fit"]["pure_error"]["ss"].clone();
+    close(&pure(&weighed), pure(&repeated).as_f64().unwrap(), 1e-12);
+    close(&weighed["lack_of_fit"]["pure_error"]["df"], 2.0, 1e-12);
+}
+
+/// lme4 1.1.31: `lmer(depth ~ V + (1 | fruit), weights = n)`; four times the weights are four
+/// times the residual variance, and nothing else.
+#[test]
+fn reference_weights_of_a_mixed_model() {
+    let formula = ["--formula", "depth ~ V + (1 | fruit)", "--weights"];
+    let found = json(DENTS, &[&formula[..], &["n"]].concat());
+    let estimates = [2.18745226129695, 5.26865891636777];
+    all_close(&column(&found["terms"], "estimate"), &estimates, 1e-6);
+    let errors = [0.34478351735506, 0.661024362708655];
+    all_close(&column(&found["terms"], "se"), &errors, 1e-6);
+    let df = [9.95787236252448, 9.47123496566084];
+    all_close(&column(&found["terms"], "df"), &df, 1e-6);
+    close(&found["log_likelihood"], -7.54006276615461, 1e-10);
+    let sds = [0.321351210312524, 0.659080472972497];
+    all_close(&column(&found["variances"], "value"), &sds, 1e-6);
+    let four: String = DENTS
+        .lines()
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let weight = cells[3].parse::<f64>().map(|own| (4.0 * own).to_string());
+            let weight = weight.unwrap_or_else(|_| "n".to_owned());
+            format!("{line},{}\n", weight.replace('n', "more"))
+        })
+        .collect();
+    let other = json(&four, &[&formula[..], &["more"]].concat());
+    close(
+        &other["log_likelihood"],
+        found["log_likelihood"].as_f64().unwrap(),
+        1e-9,
+    );
+    for (place, factor) in [(0, 1.0), (1, 2.0)] {
+        let expected = factor * found["variances"][place]["value"].as_f64().unwrap();
+        close(&other["variances"][place]["value"], expected, 1e-6);
+    }
+}
+
+/// The difference of two groups is Welch's: R's `t.test(y ~ g)` of the first two.
+#[test]
+fn closed_form_two_variances_are_welch() {
+    let two: String = GROUPS
+        .lines()
+        .take(16)
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let found = json(&two, &["--formula", "y ~ g", "--variance", "g"]);
+    let groups: [&[f64]; 2] = [
+        &[2.1, 3.4, 1.9, 2.2, 4.0, 2.8],
+        &[5.1, 7.9, 3.2, 6.6, 9.4, 4.8, 5.5, 7.1, 2.9],
+    ];
+    let moments = groups.map(|own| {
+        let n = own.len() as f64;
+        let mean = own.iter().sum::<f64>() / n;
+        let squares: f64 = own.iter().map(|y| (y - mean).powi(2)).sum();
+        (n, mean, squares / (n - 1.0))
+    });
+    let parts = moments.map(|(n, _, variance)| variance / n);
+    let sum: f64 = parts.iter().sum();
+    let squares = parts
+        .iter()
+        .zip(&moments)
+        .map(|(own, (n, ..))| own * own / (n - 1.0));
+    let df = sum * sum / squares.sum::<f64>();
+    let term = &found["terms"][1];
+    close(&term["estimate"], moments[1].1 - moments[0].1, 1e-12);
+    close(&term["se"], sum.sqrt(), 1e-10);
+    close(&term["df"], df, 1e-9);
+    close(&found["variances"]["anova_df"][0], df, 1e-9);
+    // R 4.2: df 11.117515275357, p 0.00228461762.
+    close(&term["df"], 11.117515275357, 1e-9);
+    close(&term["p"], 0.00228461762, 1e-8);
+    for (level, (n, _, variance)) in moments.iter().enumerate() {
+        let own = &found["variances"]["levels"][level];
+        close(&own["sd"], variance.sqrt(), 1e-10);
+        close(&own["df"], n - 1.0, 1e-9);
+    }
+}
+
+/// nlme 3.1: `gls(y ~ x + g, weights = varIdent(form = ~ 1 | g))`, its marginal `anova`; its search
+/// ends 1e-7 from the maximum.
+#[test]
+fn reference_three_variances_and_a_covariate() {
+    let options = ["--formula", "y ~ x + g", "--variance", "g"];
+    let found = json(GROUPS, &[&options[..], &["--anova", "3"]].concat());
+    let estimates = [
+        2.168343387641962,
+        0.161425698768963,
+        2.857861451846557,
+        3.632242978759431,
+    ];
+    all_close(&column(&found["terms"], "estimate"), &estimates, 1e-7);
+    let errors = [
+        0.3870656620010204,
+        0.0626104268426343,
+        0.8242439798431273,
+        0.3665575891369585,
+    ];
+    all_close(&column(&found["terms"], "se"), &errors, 1e-7);
+    close(&found["log_likelihood"], -29.0870705011263, 1e-11);
+    let sds = [0.781533199755193, 2.262483304670702, 0.325856202918964];
+    all_close(&column(&found["variances"]["levels"], "sd"), &sds, 1e-6);
+    let f = [6.6474031861341, 49.1177953347954];
+    all_close(&column(&found["anova"], "f"), &f, 1e-6);
+    // A further observation scatters as its own level does.
+    let found = json(GROUPS, &[&options[..], &["--predict", "t.csv"]].concat());
+    let width = |row: usize| {
+        let own = &found["predictions"][row];
+        own["high"].as_f64().unwrap() - own["low"].as_f64().unwrap()
+    };
+    assert!(width(6) > 2.0 * width(0) && width(0) > 2.0 * width(15));
+}
+
+#[test]
+fn rejects_what_tells_no_weight_or_variance() {
+    let with = |n: &str| DENTS.replace("Gala,b,0.3,1,", &format!("Gala,b,0.3,{n},"));
+    for (n, says) in [("0", "is 0 in row 3"), ("-2", "is -2 in row 3")] {
+        for formula in ["depth ~ V", "depth ~ V + (1 | fruit)"] {
+            let told = refused(&with(n), &["--formula", formula, "--weights", "n"]);
+            assert!(told.contains("line 4") && told.contains(says), "{told}");
+        }
+    }
+    let left_out = json(&with(""), &["--formula", "depth ~ V", "--weights", "n"]);
+    assert_eq!(left_out["left_out"], 1);
+    let one = GROUPS.to_owned() + "d,3,5\n";
+    let flat = "g,y\na,1\na,1\na,1\nb,3\nb,4\nb,3.3\n";
+    let own = "g,x,y\na,1,1\na,2,3\nb,1,2\nb,2,4\nb,3,5\nb,4,9\n";
+    let saturated = ["--formula", "y ~ g*x", "--variance", "g"];
+    let plain = ["--formula", "y ~ g", "--variance", "g"];
+    for (table, arguments, says) in [
+        (one.as_str(), plain, "\"d\" has one row"),
+        (flat, plain, "\"a\" has no scatter"),
+        (own, saturated, "\"a\" has coefficients of its own"),
+    ] {
+        let told = refused(table, &arguments);
+        assert!(told.contains(says), "{told}");
+    }
+    for other in [
+        &["--robust"][..],
+        &["--select", "backward"],
+        &["--random", "x"],
+        &["--weights", "x"],
+        &["--fold-by", "x"],
+    ] {
+        let told = refused(GROUPS, &[&plain[..], other].concat());
+        assert!(told.contains("--variance"), "{told}");
+    }
+}
