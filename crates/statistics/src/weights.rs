@@ -1,7 +1,5 @@
 //! Weights of rows: the variance of a row is σ² over its weight.
 
-use crate::error::Error;
-use crate::table::Table;
 use nalgebra::DMatrix;
 use std::borrow::Cow;
 use windfall_numerics::double_double::DoubleDouble;
@@ -19,35 +17,11 @@ pub struct Weights {
 impl Weights {
     /// Of the weights themselves, positive and finite.
     pub fn of(weights: impl Iterator<Item = f64>) -> Self {
-        Self::of_roots(weights.map(f64::sqrt).collect())
-    }
-
-    fn of_roots(roots: Vec<f64>) -> Self {
+        let roots: Vec<f64> = weights.map(f64::sqrt).collect();
         Self {
             log_sum: 2.0 * roots.iter().map(|root| root.ln()).sum::<f64>(),
             roots,
         }
-    }
-
-    /// Of a column of a table, in the rows `kept`.
-    ///
-    /// # Errors
-    /// No such column, text in it, and weights that are not positive or infinite, with the row.
-    pub fn of_column(
-        table: &Table,
-        name: &str,
-        kept: impl Iterator<Item = usize>,
-    ) -> Result<Self, Error> {
-        let values = table.numbers(name)?.values();
-        let root = |row: usize| match values[row] {
-            weight if weight > 0.0 && weight.is_finite() => Ok(weight.sqrt()),
-            weight => Err(Error::Weight {
-                name: name.to_owned(),
-                weight,
-                row: row + 1,
-            }),
-        };
-        kept.map(root).collect::<Result<_, _>>().map(Self::of_roots)
     }
 
     /// Whether all rows weigh 1.

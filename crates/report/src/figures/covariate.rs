@@ -168,7 +168,7 @@ fn line_and_band(points: &[(f64, f64)]) -> Option<(Line, Line)> {
         .map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64)
         .collect();
     let found = line_at(&fit, &places);
-    let at = |pick: fn(&windfall_statistics::model::linear_model::Prediction) -> f64| {
+    let at = |pick: fn(&windfall_statistics::model::prediction::Prediction) -> f64| {
         let values = places.iter().zip(&found);
         values.map(|(x, p)| (*x, pick(p))).collect::<Line>()
     };

@@ -14,6 +14,7 @@ pub mod model_frame;
 pub mod model_matrix;
 pub mod model_rows;
 pub mod original_scale;
+pub mod prediction;
 pub mod random_terms;
 pub mod reduced;
 pub mod selection;

@@ -228,6 +228,28 @@ fn complete(table: &Table, names: &[String]) -> Result<(Runs, Vec<(usize, String
     Ok((kept, left_out))
 }
 
+/// Weights in a column of a table, of the rows `kept`.
+///
+/// # Errors
+/// No such column, text in it, and weights that are not positive or infinite, with the row.
+pub fn column_weights(
+    table: &Table,
+    name: &str,
+    kept: impl Iterator<Item = usize>,
+) -> Result<Weights, Error> {
+    let values = table.numbers(name)?.values();
+    let weight = |row: usize| match values[row] {
+        weight if weight > 0.0 && weight.is_finite() => Ok(weight),
+        weight => Err(Error::Weight {
+            name: name.to_owned(),
+            weight,
+            row: row + 1,
+        }),
+    };
+    let weights: Vec<f64> = kept.map(weight).collect::<Result<_, _>>()?;
+    Ok(Weights::of(weights.into_iter()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,9 @@
 //! The straight line through points, with its band.
 
 use crate::error::Error;
-use crate::model::linear_model::{LinearFit, Prediction, fit_linear, predict};
+use crate::model::linear_model::{LinearFit, fit_linear};
 use crate::model::model_frame::ModelFrame;
+use crate::model::prediction::{Prediction, predict};
 use nalgebra::DMatrix;
 
 /// Fits y = a + b x by least squares: the linear model with one term.

@@ -10,7 +10,8 @@ use crate::mixed::kenward_roger::{
 use crate::mixed::predict::{NewRows, NewTerm, predict_mixed};
 use crate::mixed::summary::variance_shares;
 use crate::mixed::term::RandomTerm;
-use crate::model::linear_model::{LinearFit, Prediction, Quality, student_quantile};
+use crate::model::linear_model::{LinearFit, Quality, student_quantile};
+use crate::model::prediction::Prediction;
 use nalgebra::DMatrix;
 
 /// Coefficients of a surface by restricted maximum likelihood, with the errors of Kenward and

@@ -10,11 +10,12 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_statistics::model::formula::Formula;
-use windfall_statistics::model::linear_model::{LinearFit, predict};
+use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::mean_contrasts::{JointTest, joint_test};
 use windfall_statistics::model::model_frame::prediction_rows;
 use windfall_statistics::model::model_rows::FormulaRows;
 use windfall_statistics::model::original_scale::OriginalScale;
+use windfall_statistics::model::prediction::predict;
 use windfall_statistics::model::variance_groups::LevelInference;
 
 /// Marginal means, slopes and their comparisons.

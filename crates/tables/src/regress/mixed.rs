@@ -39,7 +39,9 @@ use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::formula_syntax::spelling;
 use windfall_statistics::model::mean_contrasts::JointTest;
 use windfall_statistics::model::model_frame::{chosen_rows, prediction_rows};
-use windfall_statistics::model::model_rows::{ModelRows, complete_rows, model_rows};
+use windfall_statistics::model::model_rows::{
+    ModelRows, column_weights, complete_rows, model_rows,
+};
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
 use windfall_statistics::model::reduced::{Aliased, reduce};
@@ -293,7 +295,7 @@ fn fit(
     };
     let x = rows.x.select_columns(&columns);
     let weights = match &request.weights {
-        Some(name) => Weights::of_column(&data.table, name, 0..rows.y.len()).map_err(told)?,
+        Some(name) => column_weights(&data.table, name, 0..rows.y.len()).map_err(told)?,
         None => Weights::default(),
     };
     let fit = fit_mixed_weighed((&rows.y, &weights), &x, &names, &numbers, &options)

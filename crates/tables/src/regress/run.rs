@@ -28,7 +28,7 @@ use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova
 use windfall_statistics::model::formula::{Formula, formula};
 use windfall_statistics::model::formula_syntax::spelling;
 use windfall_statistics::model::linear_model::{LinearFit, Quality, WholeModel, fit_weighted};
-use windfall_statistics::model::model_rows::{FormulaRows, formula_rows, names_of};
+use windfall_statistics::model::model_rows::{FormulaRows, column_weights, formula_rows, names_of};
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::reduced::Reduced;
 use windfall_statistics::model::selection::{Selection, select};
@@ -37,7 +37,6 @@ use windfall_statistics::residuals::cross_validation::{CrossValidation, Parts, c
 use windfall_statistics::residuals::diagnostics::{
     Inflation, Influence, inflation, influence, robust_coefficients, robust_covariance,
 };
-use windfall_statistics::weights::Weights;
 
 /// A fitted linear model.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -171,7 +170,7 @@ fn regress_linear(
     let rows = formula_rows(formula, &data.table, request.contrasts, &request.also());
     let mut rows = rows.map_err(told)?;
     if let Some(name) = &request.weights {
-        rows.weights = Weights::of_column(&data.table, name, rows.kept.iter()).map_err(told)?;
+        rows.weights = column_weights(&data.table, name, rows.kept.iter()).map_err(told)?;
     }
     let levels = weigh_levels(request, data, &mut rows)?;
     let reduced = rows.reduced().map_err(told)?;

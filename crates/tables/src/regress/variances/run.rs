@@ -12,11 +12,12 @@ use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::fit::MixedMethod;
 use windfall_statistics::model::anova::{AnovaRow, hypothesis};
 use windfall_statistics::model::linear_model::{
-    LinearFit, Prediction, Quality, WholeModel, small_sample, student_quantile,
+    LinearFit, Quality, WholeModel, small_sample, student_quantile,
 };
 use windfall_statistics::model::model_frame::prediction_rows;
 use windfall_statistics::model::model_rows::FormulaRows;
 use windfall_statistics::model::original_scale::OriginalScale;
+use windfall_statistics::model::prediction::Prediction;
 use windfall_statistics::model::reduced::Reduced;
 use windfall_statistics::model::variance_groups::{
     LevelInference, LevelledRows, VarianceGroups, variance_groups,
