@@ -229,13 +229,23 @@ fn reference_three_variances_and_a_covariate() {
     all_close(&column(&found["variances"]["levels"], "sd"), &sds, 1e-6);
     let f = [6.6474031861341, 49.1177953347954];
     all_close(&column(&found["anova"], "f"), &f, 1e-6);
-    // A further observation scatters as its own level does.
+}
+
+/// With a mean for each level, a further observation of one of n rows lies within
+/// t s √(1 + 1/n) of its mean, t with n - 1 degrees of freedom (`qt(0.975, n - 1)` in R).
+#[test]
+fn closed_form_observations_scatter_as_their_level() {
+    let options = ["--formula", "y ~ g", "--variance", "g"];
     let found = json(GROUPS, &[&options[..], &["--predict", "t.csv"]].concat());
-    let width = |row: usize| {
+    let quantiles = [2.570581835636314, 2.306004135204166, 2.776445105197799];
+    for (level, (row, t)) in [0, 6, 15].into_iter().zip(quantiles).enumerate() {
+        let own = &found["variances"]["levels"][level];
+        let (n, sd) = (own["rows"].as_f64().unwrap(), own["sd"].as_f64().unwrap());
         let own = &found["predictions"][row];
-        own["high"].as_f64().unwrap() - own["low"].as_f64().unwrap()
-    };
-    assert!(width(6) > 2.0 * width(0) && width(0) > 2.0 * width(15));
+        let width = own["high"].as_f64().unwrap() - own["low"].as_f64().unwrap();
+        let expected = 2.0 * t * sd * (1.0 + 1.0 / n).sqrt();
+        assert!((width / expected - 1.0).abs() < 1e-9, "{width} {expected}");
+    }
 }
 
 #[test]

@@ -291,7 +291,8 @@ pub struct Quality {
     pub press: f64,
     /// Range of predictions over their mean standard error; more than 4 is wanted.
     pub adequate_precision: f64,
-    /// Residual standard deviation.
+    /// Residual standard deviation: with weights that of a row of weight 1, with variances by
+    /// level the root of their mean over the rows.
     pub sigma: f64,
     /// Log-likelihood of normal residuals.
     pub log_likelihood: f64,
