@@ -17,6 +17,7 @@ use windfall_statistics::surface::coding::FactorCoding;
 use windfall_statistics::surface::desirability::{Goal, Wanted, desirability, overall};
 use windfall_statistics::surface::terms::surface_terms;
 use windfall_statistics::table::{Cells, Column, Table};
+use windfall_statistics::weights::Weights;
 
 /// A quadratic in two factors, sampled on a grid of five levels each with nothing
 /// but rounding, so that the fit is the polynomial itself.
@@ -196,6 +197,7 @@ fn closed_form_leaving_out_one_by_one() {
             folds: 40,
             seed: 3,
             units: None,
+            weights: None,
         };
         cross_validate(&rows.frame, &rows.x, &rows.y, &terms, None, parts)
             .unwrap()
