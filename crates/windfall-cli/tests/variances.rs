@@ -248,6 +248,27 @@ fn closed_form_observations_scatter_as_their_level() {
     }
 }
 
+/// Whether means are equal is one question, however categories are coded.
+#[test]
+fn conserves_the_test_of_a_term_under_other_contrasts() {
+    let options = ["--formula", "y ~ x + g", "--variance", "g", "--means", "g"];
+    let found = json(GROUPS, &options);
+    let expected = found["variances"]["anova_df"][1].as_f64().unwrap();
+    for other in [
+        &["--contrasts", "sum"][..],
+        &["--anova", "3"],
+        &["--levels", "g=c,b,a"],
+    ] {
+        let found = json(GROUPS, &[&options[..], other].concat());
+        close(&found["variances"]["anova_df"][1], expected, 1e-8);
+        close(
+            &found["means"][0]["tests"][0]["df_denominator"],
+            expected,
+            1e-8,
+        );
+    }
+}
+
 #[test]
 fn rejects_what_tells_no_weight_or_variance() {
     let with = |n: &str| DENTS.replace("Gala,b,0.3,1,", &format!("Gala,b,0.3,{n},"));

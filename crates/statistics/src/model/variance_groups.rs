@@ -345,14 +345,17 @@ impl VarianceGroups {
         let width = x.ncols();
         let mut shares = vec![DMatrix::zeros(width, width); self.variances.len()];
         for (row, own) in x.row_iter().enumerate() {
-            let (own, level) = (own.transpose(), self.level[row]);
-            shares[level].ger(1.0 / (self.variances[level] * scale), &own, &own, 1.0);
+            let own = own.transpose();
+            shares[self.level[row]].ger(1.0, &own, &own, 1.0);
         }
-        let slopes = shares.iter().map(|own| &covariance * own * &covariance);
+        let ordinary: DMatrix<f64> = shares.iter().sum();
+        let slopes = shares.iter().zip(&self.variances);
+        let slopes = slopes.map(|(own, v)| &covariance * own * &covariance / (v * scale));
         LevelInference {
             uncertainty: VarianceUncertainty::of(self.covariance.clone(), slopes.collect()),
             columns: fit.columns.clone(),
             estimates: fit.coefficients.iter().map(|own| own.estimate).collect(),
+            ordinary: ordinary.try_inverse().unwrap_or_else(|| covariance.clone()),
             covariance,
         }
     }
@@ -370,6 +373,8 @@ pub struct LevelInference {
     uncertainty: VarianceUncertainty,
     columns: Vec<usize>,
     estimates: Vec<f64>,
+    /// (X'X)⁻¹
+    ordinary: DMatrix<f64>,
     /// Covariance of the estimates.
     pub covariance: DMatrix<f64>,
 }
@@ -413,8 +418,32 @@ impl LevelInference {
     /// F test that sums of coefficients are all zero; `None` where none of them is estimated.
     ///
     /// * `sums`: weights of all columns of the model, a row for each sum
+    ///
+    /// # Numerics
+    /// Fai and Cornelius' degrees of freedom depend on which sums stand for all that follow from
+    /// them. Those are taken that one variance would make independent and equally sure, so that
+    /// the same question has the same answer however it is coded.
     pub fn test(&self, sums: &DMatrix<f64>) -> Option<FTest> {
+        /// Part of the largest variance below which a sum follows from others.
+        const RANK: f64 = 1e-10;
         let own = sums.select_columns(&self.columns);
+        if own.is_empty() {
+            return None;
+        }
+        let eigen = (&own * &self.ordinary * own.transpose()).symmetric_eigen();
+        let least = RANK * eigen.eigenvalues.amax();
+        let pairs = eigen
+            .eigenvalues
+            .iter()
+            .zip(eigen.eigenvectors.column_iter());
+        let rows = pairs.filter(|(value, _)| **value > least);
+        let rows: Vec<_> = rows
+            .map(|(value, vector)| vector.transpose() * &own / value.sqrt())
+            .collect();
+        if rows.is_empty() {
+            return None;
+        }
+        let own = DMatrix::from_rows(&rows);
         f_test_of((&self.estimates, &self.covariance), &self.uncertainty, &own).ok()
     }
 }
