@@ -91,8 +91,7 @@ impl Error {
 
     /// The error of some rows of a table, as one of the table.
     ///
-    /// * `rows`: where they are in it, from 0
-    /// The same with a row, from 1, among others, which are given from 0.
+    /// * `whole`: where a row of them is in it, both from 0
     pub(crate) fn of_rows(mut self, whole: impl Fn(usize) -> Option<usize>) -> Self {
         if let Some(row) = self.row_mut() {
             *row = whole(*row - 1).map_or(*row, |whole| whole + 1);

@@ -81,13 +81,15 @@ impl ModelMatrix<'_> {
                     name: own.name.clone(),
                     cells: within(&own.cells, kept, rows.clone()),
                 });
+                // Of a model without columns, a nameless one says how many rows there are.
+                let none = columns.is_empty().then(|| Column {
+                    name: String::new(),
+                    cells: Cells::Numbers(vec![0.0; rows.len()].into()),
+                });
                 let table = Table {
-                    columns: own.collect(),
+                    columns: own.chain(none).collect(),
                 };
-                let x = match columns.is_empty() {
-                    true => Ok(DMatrix::from_element(rows.len(), frame.names.len(), 1.0)),
-                    false => prediction_rows(frame, &table),
-                };
+                let x = prediction_rows(frame, &table);
                 x.map_err(|error| error.of_rows(|row| Some(rows.start + row)))
             }
         }
@@ -130,5 +132,104 @@ fn within(cells: &Cells, kept: &Runs, rows: Range<usize>) -> Cells {
                 .collect(),
             ordered: own.ordered,
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::contrast::Contrast;
+    use crate::model::formula::formula;
+    use crate::model::linear_model::fit_reduced;
+    use crate::model::model_rows::{formula_rows, model_rows};
+    use crate::model::reduced::reduce;
+    use crate::residuals::cross_validation::{Parts, cross_validate};
+    use crate::residuals::diagnostics::robust_covariance;
+    use crate::table::{Cells, Column, LevelCodes, Table};
+
+    /// A table of many rows, of which one in a hundred lacks a cell.
+    fn table(rows: usize) -> Table {
+        let wave = |row: usize, step: f64| ((row as f64 * step).sin() * 1e3).round() / 1e3;
+        let missing = |row: usize| if row % 100 == 7 { f64::NAN } else { 0.0 };
+        let numbers = |name: &str, value: &dyn Fn(usize) -> f64| Column {
+            name: name.to_owned(),
+            cells: Cells::Numbers((0..rows).map(value).collect()),
+        };
+        let mut levels = LevelCodes::default();
+        (0..rows).for_each(|row| levels.push(Some(["a", "b", "c"][row * row % 3])));
+        Table {
+            columns: vec![
+                numbers("y", &|row| 2.0 + wave(row, 1.7) + missing(row)),
+                numbers("x", &|row| wave(row, 0.31)),
+                numbers("z", &|row| 3.0 + wave(row, 0.077)),
+                Column {
+                    name: "f".to_owned(),
+                    cells: Cells::Categories(levels.sorted()),
+                },
+            ],
+        }
+    }
+
+    /// A matrix that is evaluated in blocks gives the bits of one in memory.
+    #[test]
+    fn repeats_the_matrix_in_memory() {
+        let table = table(60_000);
+        for text in [
+            "y ~ log(z) + f * x + poly(x, 2)",
+            "y ~ 1 + I(2 * 3) + x + z + f + x:z",
+        ] {
+            let formula = formula(text, &[]).unwrap();
+            let held = model_rows(&formula, &table, Contrast::Treatment, &[]).unwrap();
+            let rows = formula_rows(&formula, &table, Contrast::Treatment, &[]).unwrap();
+            let x = rows.x();
+            assert!(matches!(x, super::ModelMatrix::Evaluated { .. }));
+            assert_eq!(*x.whole().unwrap(), held.x);
+            let reduced = rows.reduced().unwrap();
+            assert_eq!(reduced, reduce(&held.x, &held.y));
+            let wanted: Vec<usize> = (0..x.columns()).collect();
+            let fit = fit_reduced(&rows.frame, x, &rows.y, &reduced, &wanted, 0.95).unwrap();
+            let own = fit_reduced(&held.frame, &held.x, &held.y, &reduced, &wanted, 0.95);
+            assert_eq!(fit, own.unwrap());
+            let robust = robust_covariance(&fit, &x).unwrap();
+            assert_eq!(robust, robust_covariance(&fit, &(&held.x).into()).unwrap());
+        }
+    }
+
+    /// Parts that are reduced once predict what divisions by themselves do.
+    #[test]
+    fn conserves_the_error_of_prediction() {
+        let table = table(60_000);
+        let formula = formula("y ~ x + z + f + x:z", &[]).unwrap();
+        let rows = formula_rows(&formula, &table, Contrast::Treatment, &[]).unwrap();
+        let terms: Vec<usize> = (0..rows.frame.terms.len()).collect();
+        let found = |folds: usize| {
+            let parts = Parts {
+                folds,
+                seed: 3,
+                units: None,
+            };
+            let found = cross_validate(&rows.frame, rows.x(), &rows.y, &terms, None, parts);
+            found.unwrap().unwrap()
+        };
+        let x = rows.x();
+        let whole = x.whole().unwrap();
+        let (few, many) = (found(2), found(64));
+        // By hand: each half predicted from the other.
+        let mut halves = [Vec::new(), Vec::new()];
+        let part = crate::residuals::cross_validation::parts_of(rows.y.len(), 2, 3);
+        (0..rows.y.len()).for_each(|row| halves[part[row] as usize].push(row));
+        let wanted: Vec<usize> = (0..x.columns()).collect();
+        let mut square = 0.0;
+        for (own, other) in [(0, 1), (1, 0)] {
+            let y: Vec<f64> = halves[other].iter().map(|row| rows.y[*row]).collect();
+            let solved = reduce(&whole.select_rows(&halves[other]), &y).solve(&wanted);
+            for row in &halves[own] {
+                let pairs = solved.columns.iter().zip(&solved.estimates);
+                let predicted: f64 = pairs.map(|(c, b)| whole[(*row, *c)] * b.value()).sum();
+                square += (rows.y[*row] - predicted).powi(2);
+            }
+        }
+        let rms = (square / rows.y.len() as f64).sqrt();
+        assert!((few.rms / rms - 1.0).abs() < 1e-12, "{} {rms}", few.rms);
+        assert!((many.rms / rms - 1.0).abs() < 1e-3);
     }
 }

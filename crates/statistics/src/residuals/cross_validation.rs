@@ -86,7 +86,7 @@ pub fn cross_validate<'a>(
 }
 
 /// Part of each unit.
-fn parts_of(count: usize, folds: usize, seed: u64) -> Vec<u32> {
+pub(crate) fn parts_of(count: usize, folds: usize, seed: u64) -> Vec<u32> {
     let mut order: Vec<u32> = (0..count as u32).collect();
     shuffle(&mut order, seed);
     let mut part_of_unit = vec![0; count];
