@@ -243,6 +243,10 @@ struct PartText<'a> {
 }
 
 impl<'a> PartText<'a> {
+    #[expect(
+        clippy::ptr_arg,
+        reason = "what is borrowed from the block outlives the cell"
+    )]
     fn push(&mut self, cell: &Cow<'a, str>, manner: &Manner) {
         let own = match cell {
             Cow::Borrowed(text) => Cow::Borrowed(plain_cell(text)),
@@ -313,6 +317,10 @@ fn part<'a>(form: &Form, block: &'a Block, manner: &Manner, held: &[Held]) -> Pa
 
 impl<'a> PartCells<'a> {
     #[inline]
+    #[expect(
+        clippy::ptr_arg,
+        reason = "what is borrowed from the block outlives the cell"
+    )]
     fn push(&mut self, line: usize, cell: &Cow<'a, str>, manner: &Manner) {
         match self {
             Self::Nothing | Self::Whole { .. } | Self::Failed => (),

@@ -236,6 +236,17 @@ fn polynomial(
 }
 
 impl Encoding {
+    /// The column that it is, where nothing is calculated.
+    pub(crate) fn plain_column(&self) -> Option<&str> {
+        match self {
+            Self::Numbers { node, .. } => match &node.kind {
+                Kind::Name(name) => Some(name),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
     /// Columns of the table that it is made from.
     pub(crate) fn sources(&self) -> Vec<String> {
         match self {

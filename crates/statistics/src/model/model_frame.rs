@@ -128,6 +128,14 @@ fn matrix(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>, Error> {
         x.column_mut(0).fill(1.0);
     }
     for term in &frame.terms {
+        // A column as it is needs no copy on its way.
+        if let [(atom, _)] = &term.atoms[..]
+            && let Some(name) = frame.atoms[*atom].plain_column()
+        {
+            let numbers = table.numbers(name)?.values();
+            x.column_mut(term.columns.start).copy_from_slice(&numbers);
+            continue;
+        }
         let mut columns: Vec<Vec<f64>> = Vec::new();
         for (place, (atom, coding)) in term.atoms.iter().enumerate() {
             let own = frame.atoms[*atom].values(*coding, table)?;
