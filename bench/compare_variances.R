@@ -211,13 +211,13 @@ check_levels <- function(group, table, formula, by, maximum = FALSE, means = NUL
   compare(group, "standard error", found$terms$se, unname(own[, 2]), limit)
   compare(group, "log-likelihood, AIC", c(found$log_likelihood, found$aic), c(as.numeric(logLik(fit)), AIC(fit)), 1e-8)
   variances <- level_variances(fit, table, by)
-  levels <- found$variances$levels
+  levels <- found$level_variances$levels
   order <- match(levels$level, names(variances))
   stopifnot(!anyNA(order))
   compare(group, "standard deviations", levels$sd, unname(sqrt(variances[order])), limit)
   one <- do.call(gls, list(formula, table, method = method, na.action = na.omit))
-  compare(group, "likelihood ratio", found$variances$test$statistic, 2 * as.numeric(logLik(fit) - logLik(one)), 1e-6)
-  compare(group, "p of it", found$variances$test$p, anova(fit, one)[["p-value"]][2], 1e-6)
+  compare(group, "likelihood ratio", found$level_variances$test$statistic, 2 * as.numeric(logLik(fit) - logLik(one)), 1e-6)
+  compare(group, "p of it", found$level_variances$test$p, anova(fit, one)[["p-value"]][2], 1e-6)
   frame <- model.frame(update(formula, . ~ . + .by), table)
   x <- model.matrix(formula, frame)
   windfall_variances <- setNames(levels$sd^2, levels$level)

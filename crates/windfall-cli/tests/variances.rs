@@ -193,12 +193,12 @@ fn closed_form_two_variances_are_welch() {
     close(&term["estimate"], moments[1].1 - moments[0].1, 1e-12);
     close(&term["se"], sum.sqrt(), 1e-10);
     close(&term["df"], df, 1e-9);
-    close(&found["variances"]["anova_df"][0], df, 1e-9);
+    close(&found["level_variances"]["anova_df"][0], df, 1e-9);
     // R 4.2: df 11.117515275357, p 0.00228461762.
     close(&term["df"], 11.117515275357, 1e-9);
     close(&term["p"], 0.00228461762, 1e-8);
     for (level, (n, _, variance)) in moments.iter().enumerate() {
-        let own = &found["variances"]["levels"][level];
+        let own = &found["level_variances"]["levels"][level];
         close(&own["sd"], variance.sqrt(), 1e-10);
         close(&own["df"], n - 1.0, 1e-9);
     }
@@ -226,7 +226,11 @@ fn reference_three_variances_and_a_covariate() {
     all_close(&column(&found["terms"], "se"), &errors, 1e-7);
     close(&found["log_likelihood"], -29.0870705011263, 1e-11);
     let sds = [0.781533199755193, 2.262483304670702, 0.325856202918964];
-    all_close(&column(&found["variances"]["levels"], "sd"), &sds, 1e-6);
+    all_close(
+        &column(&found["level_variances"]["levels"], "sd"),
+        &sds,
+        1e-6,
+    );
     let f = [6.6474031861341, 49.1177953347954];
     all_close(&column(&found["anova"], "f"), &f, 1e-6);
 }
@@ -239,7 +243,7 @@ fn closed_form_observations_scatter_as_their_level() {
     let found = json(GROUPS, &[&options[..], &["--predict", "t.csv"]].concat());
     let quantiles = [2.570581835636314, 2.306004135204166, 2.776445105197799];
     for (level, (row, t)) in [0, 6, 15].into_iter().zip(quantiles).enumerate() {
-        let own = &found["variances"]["levels"][level];
+        let own = &found["level_variances"]["levels"][level];
         let (n, sd) = (own["rows"].as_f64().unwrap(), own["sd"].as_f64().unwrap());
         let own = &found["predictions"][row];
         let width = own["high"].as_f64().unwrap() - own["low"].as_f64().unwrap();
@@ -253,14 +257,14 @@ fn closed_form_observations_scatter_as_their_level() {
 fn conserves_the_test_of_a_term_under_other_contrasts() {
     let options = ["--formula", "y ~ x + g", "--variance", "g", "--means", "g"];
     let found = json(GROUPS, &options);
-    let expected = found["variances"]["anova_df"][1].as_f64().unwrap();
+    let expected = found["level_variances"]["anova_df"][1].as_f64().unwrap();
     for other in [
         &["--contrasts", "sum"][..],
         &["--anova", "3"],
         &["--levels", "g=c,b,a"],
     ] {
         let found = json(GROUPS, &[&options[..], other].concat());
-        close(&found["variances"]["anova_df"][1], expected, 1e-8);
+        close(&found["level_variances"]["anova_df"][1], expected, 1e-8);
         close(
             &found["means"][0]["tests"][0]["df_denominator"],
             expected,

@@ -51,7 +51,7 @@ pub struct RegressOutcome {
     /// Column of the weights of rows.
     pub weights: Option<String>,
     /// Residual variances by level, where they differ.
-    pub variances: Option<VariancesOutcome>,
+    pub level_variances: Option<VariancesOutcome>,
     /// Estimates.
     pub terms: Vec<Coefficient>,
     /// Whether their standard errors are HC3.
@@ -244,7 +244,7 @@ fn infer_levels(
     let tests = (&mut outcome.anova[..], &mut outcome.model);
     let found = levels.tests(request, tested, tests).map_err(told)?;
     levels.qualify(&mut outcome.quality, fit);
-    outcome.variances = Some(found);
+    outcome.level_variances = Some(found);
     if let Some(asked) = request.asked()? {
         let scale = formula.response.as_ref();
         let scale = scale.and_then(|own| OriginalScale::of(own, &data.table, &rows.kept));
@@ -349,7 +349,7 @@ fn outcome(
         response: formula.response.as_ref().map(spelling).unwrap_or_default(),
         count: row_count(&rows.frame, &data.table, &rows.left_out),
         weights: request.weights.clone(),
-        variances: None,
+        level_variances: None,
         terms,
         robust: request.robust,
         covariance,

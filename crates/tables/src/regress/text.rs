@@ -148,7 +148,7 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     if outcome.robust {
         text += "\nStandard errors that hold for unequal variances (HC3).\n";
     }
-    if let Some(variances) = &outcome.variances {
+    if let Some(variances) = &outcome.level_variances {
         text += &variances_text(outcome, variances);
         return text + &rest_text(outcome);
     }

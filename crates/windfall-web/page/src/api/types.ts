@@ -208,6 +208,9 @@ export interface LawsOutcome {
   meaning: string; laws: LawEvidenceOutcome[]; specimens_first: number[]; failed: FailureOutcome[];
   findings: FindingOutcome[];
 }
+export interface LevelVarianceOutcome {
+  level: string; rows: number; sd: number; low: number; high: number; df: number;
+}
 export interface LimitOutcome { limit: number; share: number; interval: number[]; }
 export interface LiveLaw {
   law: string; outcome: ImpactOutcome | null; problem: string | null; motion: ShownMotion | null;
@@ -243,10 +246,10 @@ export interface MeasuredValue {
 }
 export type MixedOutcome = RowCount & ({
   formula: string; response: string; method: string; df_method: string; groups: [string, number][];
-  terms: TermOutcome[]; covariance: number[][]; ranges: ModelRange[]; anova: MixedTest[]; variances: VarianceOutcome[];
-  r2: number; r2_adjusted: number | null; r2_conditional: number; intraclass: number[]; log_likelihood: number;
-  criterion: number; aic: number; aicc: number; bic: number; removed: string[]; effects: EffectOutcome[];
-  predictions: MixedPredictionOutcome[]; means: MeansOutcome[]; findings: FindingOutcome[];
+  weights: string | null; terms: TermOutcome[]; covariance: number[][]; ranges: ModelRange[]; anova: MixedTest[];
+  variances: VarianceOutcome[]; r2: number; r2_adjusted: number | null; r2_conditional: number; intraclass: number[];
+  log_likelihood: number; criterion: number; aic: number; aicc: number; bic: number; removed: string[];
+  effects: EffectOutcome[]; predictions: MixedPredictionOutcome[]; means: MeansOutcome[]; findings: FindingOutcome[];
 });
 export interface MixedPrediction {
   population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
@@ -335,12 +338,12 @@ export interface RegressGiven {
   table: string; response: string; terms: string; random?: string[]; select?: boolean;
 }
 export type RegressOutcome = RowCount & QualityOutcome & ({
-  formula: string; response: string; terms: TermOutcome[]; robust: boolean; covariance: number[][];
-  ranges: ModelRange[]; model: WholeModel; residual: SumOfSquares; total: SumOfSquares; anova_type: string;
-  anova: AnovaOutcome[]; lack_of_fit: LackOfFitOutcome | null; vif: InflationOutcome[]; removed: StepOutcome[];
-  steps: StepOutcome[]; cross_validation: CrossValidationOutcome | null; fold_by: string | null;
-  residuals: ModelResiduals; influence: RowOutcome[]; predictions: PredictionOutcome[]; means: MeansOutcome[];
-  findings: FindingOutcome[];
+  formula: string; response: string; weights: string | null; level_variances: VariancesOutcome | null;
+  terms: TermOutcome[]; robust: boolean; covariance: number[][]; ranges: ModelRange[]; model: WholeModel;
+  residual: SumOfSquares; total: SumOfSquares; anova_type: string; anova: AnovaOutcome[];
+  lack_of_fit: LackOfFitOutcome | null; vif: InflationOutcome[]; removed: StepOutcome[]; steps: StepOutcome[];
+  cross_validation: CrossValidationOutcome | null; fold_by: string | null; residuals: ModelResiduals;
+  influence: RowOutcome[]; predictions: PredictionOutcome[]; means: MeansOutcome[]; findings: FindingOutcome[];
 });
 export interface ReportFiles { page: string; files: string[]; impacts: number; failed: number; }
 export interface ResidualOutcome {
@@ -430,6 +433,10 @@ export interface Uploaded { file: string; bytes: number; sha256: string; recordi
 export interface VarianceOutcome {
   group: string; kind: string; of: string; value: number; low: number | null; high: number | null;
 }
+export interface VariancesOutcome {
+  by: string; method: string; levels: LevelVarianceOutcome[]; test: VariancesTest; anova_df: number[]; model_df: number;
+}
+export interface VariancesTest { statistic: number; df: number; p: number; }
 export interface VerifiedResponse {
   response: string; unit: string; measured: number | null; predicted: number | null; simulated: number | null;
   difference: number | null;
