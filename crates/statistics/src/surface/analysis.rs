@@ -212,7 +212,7 @@ impl Surface {
     /// The same surface of runs in random groups, as days or whole plots are.
     ///
     /// # Errors
-    /// As [`RandomGroups::of`].
+    /// Those of mixed models: variances that cannot be told apart, too few groups or rows.
     pub fn in_random_groups(mut self, y: &[f64], terms: Vec<RandomTerm>) -> Result<Self, Error> {
         let random = RandomGroups::of(&self.fit, &self.x, y, terms)?;
         let estimates = random.fit.coefficients.iter().copied();
