@@ -249,6 +249,13 @@ pub const WRITTEN: &[Output] = &[
         &["design.csv"],
     ),
     (
+        "design split-plot",
+        "--out",
+        Kind::File,
+        "design split-plot --factor A=0..1 --factor B=0..1 --hard A --whole-plots 4 --model A+B --runs 8 --out {}",
+        &[],
+    ),
+    (
         "simulate impact",
         "--plot",
         Kind::Picture,
