@@ -88,12 +88,12 @@ pub enum DesignError {
     },
     #[error("{blocks} blocks cannot be had: {problem}")]
     BlocksImpossible { blocks: usize, problem: String },
-    #[error("a split-plot design cannot be had: {problem}")]
+    #[error("this split-plot design cannot be made: {problem}")]
     WholePlotsImpossible { problem: String },
     #[error(
-        "{found} whole plots are too few: {terms} terms of the model change between whole plots \
-         alone, the mean among them; give at least {terms}, and one or more beyond to tell the \
-         scatter between whole plots"
+        "{found} whole plots are too few: {terms} terms of the model, the mean included, change \
+         only between whole plots; give at least {terms}, and one or more beyond that to estimate \
+         the scatter between whole plots"
     )]
     WholePlotsTooFew { found: usize, terms: usize },
     #[error("alpha = {alpha}: the axial distance must be a finite number above zero")]

@@ -5,13 +5,13 @@ use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 
 /// Added to the diagonal of X'X, relative to its mean, so that singular starts improve.
-const RIDGE: f64 = 1e-10;
+pub(crate) const RIDGE: f64 = 1e-10;
 
 /// Improvements below this are rounding, relative; 1.
-const IMPROVEMENT: f64 = 1e-9;
+pub(crate) const IMPROVEMENT: f64 = 1e-9;
 
 /// Most passes over all runs of one start.
-const MOST_PASSES: usize = 200;
+pub(crate) const MOST_PASSES: usize = 200;
 
 /// First stream of the seed; each start has its own.
 const STREAM: u64 = 1000;

@@ -31,13 +31,14 @@ pub enum DesignFinding {
     )]
     SettingsRounded { factor: String, coded: f64 },
     #[error(
-        "{plots} whole plots determine the terms of the hard-to-change factors and leave nothing to \
-         tell the scatter between whole plots: these terms will have no honest test; add whole plots"
+        "{plots} whole plots determine the terms of the hard-to-change factors and leave no degrees \
+         of freedom for the scatter between whole plots: there will be no valid test of these terms; \
+         add whole plots"
     )]
     NoWholePlotError { plots: usize },
     #[error(
-        "{runs} runs leave nothing to tell the scatter within whole plots: add runs, or leave out \
-         terms"
+        "{runs} runs leave no degrees of freedom for the scatter within whole plots: add runs, or \
+         leave out terms"
     )]
     NoErrorWithinPlots { runs: usize },
     #[error("with {decimals} decimals two levels of {factor} are printed as one number")]

@@ -187,15 +187,17 @@ fn best_points(
     let mut points: Vec<Vec<f64>> = best
         .map(|best| best.places.iter().map(|places| point(places)).collect())
         .unwrap_or_default();
-    // Standard order: the last factor changes slowest, as in a factorial.
-    points.sort_by(|a, b| {
-        let pairs = a.iter().rev().zip(b.iter().rev());
-        pairs
-            .map(|(a, b)| a.total_cmp(b))
-            .find(|o| o.is_ne())
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
+    points.sort_by(|a, b| in_order(a, b));
     points
+}
+
+/// Standard order of coded points: the last factor changes slowest, as in a factorial.
+pub(crate) fn in_order(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
+    let pairs = a.iter().rev().zip(b.iter().rev());
+    pairs
+        .map(|(a, b)| a.total_cmp(b))
+        .find(|order| order.is_ne())
+        .unwrap_or(std::cmp::Ordering::Equal)
 }
 
 /// Starts that take [`WORK`].

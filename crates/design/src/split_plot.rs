@@ -1,26 +1,16 @@
 //! Split-plot designs: hard-to-change factors are set once for each whole plot of several runs.
 
 use crate::error::DesignError;
-use crate::exchange::Criterion;
+use crate::exchange::{Criterion, IMPROVEMENT, MOST_PASSES, RIDGE};
 use crate::finding::DesignFinding;
 use crate::kind::{Design, Factor, Point, check_factors, check_runs, design_of};
 use crate::model::region_points;
-use crate::optimal::{MOST_TERMS, ModelRow, check_defined, check_levels, moments};
+use crate::optimal::{MOST_TERMS, ModelRow, check_defined, check_levels, in_order, moments};
 use crate::quality::design_quality;
 use crate::random::{below, generator};
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-
-/// Added to the diagonal of the information, relative to its mean, so that singular starts
-/// improve; 1.
-const RIDGE: f64 = 1e-10;
-
-/// Improvements below this are rounding, relative; 1.
-const IMPROVEMENT: f64 = 1e-9;
-
-/// Most passes over all runs of one start.
-const MOST_PASSES: usize = 100;
 
 /// First stream of the seed; each start has its own.
 const STREAM: u64 = 100_000;
@@ -384,9 +374,8 @@ impl Problem<'_> {
         let mut best: Option<(f64, Vec<Vec<f64>>, DMatrix<f64>)> = None;
         for level in &self.levels[factor] {
             let mut changed = state.plots[plot].clone();
-            let mut runs = changed.iter_mut().enumerate();
-            runs.by_ref()
-                .filter(|(place, _)| run.is_none_or(|own| own == *place))
+            let runs = changed.iter_mut().enumerate();
+            runs.filter(|(place, _)| run.is_none_or(|own| own == *place))
                 .for_each(|(_, point)| point[factor] = *level);
             if changed == state.plots[plot] {
                 continue;
@@ -412,13 +401,4 @@ struct State {
     plots: Vec<Vec<Vec<f64>>>,
     information: DMatrix<f64>,
     cost: f64,
-}
-
-/// The last factor changes slowest, as in a factorial.
-fn in_order(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
-    let pairs = a.iter().rev().zip(b.iter().rev());
-    pairs
-        .map(|(a, b)| a.total_cmp(b))
-        .find(|order| order.is_ne())
-        .unwrap_or(std::cmp::Ordering::Equal)
 }

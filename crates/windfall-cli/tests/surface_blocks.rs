@@ -25,7 +25,7 @@ Time,Temp,Block,Yield\n80,170,B1,80.5\n80,180,B1,81.5\n90,170,B1,82\n\
 85,175,B2,79.7\n85,175,B2,79.8\n85,175,B2,79.5\n92.07,175,B2,78.4\n\
 77.93,175,B2,75.6\n85,182.07,B2,78.5\n85,167.93,B2,77\n";
 
-const SURFACE: [&str; 2] = ["surface", "t.csv"];
+pub const SURFACE: [&str; 2] = ["surface", "t.csv"];
 
 fn json(table: &str, arguments: &[&str]) -> Value {
     on_table::json(table, &[&SURFACE[..], arguments].concat())
@@ -55,7 +55,7 @@ const OF_HELICOPTERS: [&str; 18] = [
     "--range",
     "x4=-1..1",
 ];
-const OF_REACTION: [&str; 10] = [
+pub const OF_REACTION: [&str; 10] = [
     "--response",
     "Yield",
     "--factor",

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::on_table;
+use crate::surface_blocks::{OF_REACTION, SURFACE};
 use serde_json::Value;
 
 /// Yield of a reaction as in `surface_blocks`, over four days of our own.
@@ -10,21 +11,6 @@ const DAYS: &str = "\
 Time,Temp,day,Yield\n80,170,B1,80.5\n80,180,B1,81.5\n90,170,B1,82\n90,180,B2,83.5\n\
 85,175,B2,83.9\n85,175,B1,84.3\n85,175,B3,84\n85,175,B3,79.7\n85,175,B3,79.8\n85,175,B2,79.5\n\
 92.07,175,B4,78.4\n77.93,175,B4,75.6\n85,182.07,B4,78.5\n85,167.93,B2,77\n";
-
-const SURFACE: [&str; 12] = [
-    "surface",
-    "t.csv",
-    "--response",
-    "Yield",
-    "--factor",
-    "Time",
-    "--factor",
-    "Temp",
-    "--range",
-    "Time=80..90",
-    "--range",
-    "Temp=170..180",
-];
 
 fn close(found: &Value, expected: f64) {
     on_table::close(found, expected, 1e-6);
@@ -41,7 +27,7 @@ fn reference_reaction_over_four_days() {
         "--grid-points",
         "2",
     ];
-    let found = on_table::json(DAYS, &[&SURFACE[..], &options].concat());
+    let found = on_table::json(DAYS, &[&SURFACE[..], &OF_REACTION, &options].concat());
     let model = &found["responses"][0];
     let terms = model["terms"].as_array().unwrap();
     for (own, (name, coded, se, df)) in terms.iter().zip([
@@ -95,7 +81,7 @@ fn a_further_observation_reckons_with_its_day() {
         "Temp=175",
     ];
     let width = |random: &str| {
-        let arguments = [&SURFACE[..], &goal, &["--random", random]].concat();
+        let arguments = [&SURFACE[..], &OF_REACTION, &goal, &["--random", random]].concat();
         let found = on_table::json(DAYS, &arguments);
         let own = &found["optimum"]["responses"][0];
         own["high"].as_f64().unwrap() - own["low"].as_f64().unwrap()
@@ -152,7 +138,8 @@ fn rejects_groups_that_are_none() {
         ),
         (&one, &["--random", "day"], "1 groups with rows"),
     ] {
-        let (status, _, told) = on_table::run(table, &[&SURFACE[..], options].concat());
+        let (status, _, told) =
+            on_table::run(table, &[&SURFACE[..], &OF_REACTION, options].concat());
         assert_ne!(status, Some(0), "{options:?}: {told}");
         assert!(told.contains(said), "{options:?}: {told}");
     }
@@ -193,7 +180,7 @@ fn whole_plots_of_a_design_are_read_from_its_column() {
     ];
     let shown = windfall(&design);
     assert!(
-        shown.contains("Set the hard-to-change factors anew"),
+        shown.contains("Reset the hard-to-change factors"),
         "{shown}"
     );
     let text = std::fs::read_to_string(folder.path().join("plots.csv")).unwrap();

@@ -45,19 +45,19 @@ pub fn optimal_design(
         Some((path, data)) => points_of(path, &data, &factors).map(Some),
     });
     let (existing, listed) = (existing?.unwrap_or_default(), listed?);
-    let model = row_model(&request.model, &factors)?;
+    let model = row_model(&request.search.model, &factors)?;
     let row = |coded: &[f64]| row_at(&model, &factors, coded);
     let options = OptimalOptions {
         runs: request.runs,
         criterion,
-        starts: request.starts,
+        starts: request.search.starts,
         seed,
     };
     let make =
         |candidates: Candidates| optimal(factors.clone(), &row, candidates, &existing, &options);
     let design = match &listed {
         Some(points) => make(Candidates::Points(points)).map_err(impossible)?,
-        None => with_levels(&model, &given, request.points, |levels| {
+        None => with_levels(&model, &given, request.search.points, |levels| {
             make(Candidates::Levels(levels))
         })?,
     };
@@ -84,7 +84,7 @@ pub fn split_plot_design(
         })
     };
     let hard: Result<Vec<usize>, Error> = request.hard.iter().map(named).collect();
-    let model = row_model(&request.model, &factors)?;
+    let model = row_model(&request.search.model, &factors)?;
     let row = |coded: &[f64]| row_at(&model, &factors, coded);
     let options = SplitPlotOptions {
         hard: hard?,
@@ -92,10 +92,10 @@ pub fn split_plot_design(
         runs: request.runs,
         ratio: request.ratio,
         criterion: request.criterion,
-        starts: request.starts,
+        starts: request.search.starts,
         seed,
     };
-    let design = with_levels(&model, &given, request.points, |levels| {
+    let design = with_levels(&model, &given, request.search.points, |levels| {
         split_plot(factors.clone(), &row, levels, &options)
     })?;
     Ok((design, model))

@@ -142,10 +142,10 @@ pub struct SpaceRequest {
     pub runs: usize,
 }
 
-/// What is asked of an optimal design.
+/// How an exchange of runs searches.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
-pub struct OptimalRequest {
+pub struct SearchRequest {
     /// linear, 2fi, quadratic, or a formula in names or letters; factors stand for their coded
     /// values
     #[cfg_attr(
@@ -153,21 +153,30 @@ pub struct OptimalRequest {
         arg(long, default_value = "quadratic", value_name = "MODEL")
     )]
     pub model: String,
-    /// New runs
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
-    pub runs: usize,
     /// Levels of each range to choose from; what the model needs if left out
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub points: Option<usize>,
+    /// Random starts; as many as take seconds if left out
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub starts: Option<usize>,
+}
+
+/// What is asked of an optimal design.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+pub struct OptimalRequest {
+    /// New runs
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    pub runs: usize,
     /// Choose from the rows of this table, with a column for each factor
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", value_hint = clap::ValueHint::FilePath, conflicts_with = "points"))]
     pub candidates: Option<PathBuf>,
     /// Runs already made, which are kept; a column for each factor
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", value_hint = clap::ValueHint::FilePath))]
     pub augment: Option<PathBuf>,
-    /// Random starts; as many as take seconds if left out
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
-    pub starts: Option<usize>,
+    /// How it is searched
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub search: SearchRequest,
 }
 
 /// What is asked of a split-plot design.
@@ -183,13 +192,6 @@ pub struct SplitPlotRequest {
     /// Runs of all whole plots
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub runs: usize,
-    /// linear, 2fi, quadratic, or a formula in names or letters; factors stand for their coded
-    /// values
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, default_value = "quadratic", value_name = "MODEL")
-    )]
-    pub model: String,
     /// Expected variance between whole plots over that within
     #[cfg_attr(
         feature = "clap",
@@ -204,10 +206,7 @@ pub struct SplitPlotRequest {
     /// What is made good: the coefficients (d), or the predictions (i)
     #[cfg_attr(feature = "clap", arg(long, default_value = "d", value_name = "CRITERION", value_parser = optimality()))]
     pub criterion: Criterion,
-    /// Levels of each range to choose from; what the model needs if left out
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
-    pub points: Option<usize>,
-    /// Random starts; as many as take seconds if left out
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
-    pub starts: Option<usize>,
+    /// How it is searched
+    #[cfg_attr(feature = "clap", command(flatten))]
+    pub search: SearchRequest,
 }

@@ -52,7 +52,7 @@ pub fn make_design(kind: &DesignKind, request: &DesignRequest) -> Result<DesignO
             let (design, model) = split_plot_design(own, &request.factors, request.seed)?;
             ratio = own.ratio;
             let about = vec![
-                format!("model {}", own.model),
+                format!("model {}", own.search.model),
                 format!(
                     "whole plots {} - hard to change {} - ratio of variances {ratio}",
                     own.whole_plots,
@@ -60,16 +60,16 @@ pub fn make_design(kind: &DesignKind, request: &DesignRequest) -> Result<DesignO
                 ),
                 format!("search of seed {}", request.seed),
             ];
-            (design, Some((own.model.clone(), model)), about)
+            (design, Some((own.search.model.clone(), model)), about)
         }
         DesignKind::Optimal(criterion, optimal) => {
             let optimal_for = (optimal, *criterion);
             let (design, model) = optimal_design(optimal_for, &request.factors, request.seed)?;
             let about = vec![
-                format!("model {}", optimal.model),
+                format!("model {}", optimal.search.model),
                 format!("search of seed {}", request.seed),
             ];
-            (design, Some((optimal.model.clone(), model)), about)
+            (design, Some((optimal.search.model.clone(), model)), about)
         }
         kind => {
             let given = factors_of(&request.factors)?;

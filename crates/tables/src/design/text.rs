@@ -40,9 +40,9 @@ pub fn text_of_design(outcome: &DesignOutcome) -> String {
         text += &format!("… and {left} more; --out FILE.csv writes all\n");
     }
     if design.whole_plots().is_some() {
-        let reset = "Set the hard-to-change factors anew at the beginning of each whole plot, also \
-                     where their settings stay: two plots that share a setting share its error. σ is that of a run \
-                     within its whole plot.";
+        let reset = "Reset the hard-to-change factors at the start of every whole plot, even where \
+                     their settings stay the same: plots that share one setting share its error. \
+                     σ is the standard deviation of a run within its whole plot.";
         text += &format!("\n{}\n", paragraph(reset, 0));
     }
     text += &format!("\n{}", properties(outcome));

@@ -137,9 +137,9 @@ pub(crate) fn random_finding(terms: &[RandomTerm]) -> FindingOutcome {
     finding(
         "random-groups",
         format!(
-            "runs are in random groups ({}): coefficients are of restricted maximum likelihood, \
-             errors and degrees of freedom Kenward and Roger's; surfaces, optimum and figures are \
-             those of the mean group (--random none leaves the groups out)",
+            "runs are in random groups ({}): coefficients are estimated by restricted maximum \
+             likelihood, with Kenward and Roger's errors and degrees of freedom; surfaces, optimum \
+             and figures are those of the mean group (--random none ignores the groups)",
             groups.join(", ")
         ),
     )
