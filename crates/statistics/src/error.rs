@@ -64,8 +64,8 @@ pub enum Error {
         known: String,
     },
     #[error(
-        "the weight {name} is {weight} in row {row}: weights are positive and finite; leave the \
-         cell blank to leave the row out"
+        "the weight {name} is {weight} in row {row}: weights must be positive and finite; blank \
+         the cell to leave the row out"
     )]
     Weight {
         name: String,
@@ -73,8 +73,8 @@ pub enum Error {
         row: usize,
     },
     #[error(
-        "{column}: the level {level:?} {what}, so its rows tell no variance of their own: put it \
-         together with another level, leave its rows out, or fit without --variance"
+        "{column}: the level {level:?} {what}, so its variance cannot be estimated: merge it with \
+         another level, leave its rows out, or fit without --variance"
     )]
     LevelVariance {
         column: String,

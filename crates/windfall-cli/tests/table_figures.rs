@@ -408,6 +408,33 @@ fn closed_form_tables_of_which_little_can_be_drawn() {
     assert!(text(&folder, "random-effects-quantiles.svg").contains("do not differ"));
 }
 
+/// Effects are drawn with the intervals that marginal means have, whatever tells the variances.
+#[test]
+fn conserves_the_intervals_of_marginal_means() {
+    let table = "g,w,y\na,1,2.1\na,2,3.4\na,1,1.9\na,4,2.2\nb,2,5.1\nb,1,7.9\nb,3,3.2\nb,1,6.6\n\
+                 b,2,9.4\nc,1,6.1\nc,2,6.6\nc,2,6.2\n";
+    let formula = ["regress", "t.csv", "--formula", "y ~ g"];
+    for how in [
+        &[][..],
+        &["--variance", "g"],
+        &["--variance", "g", "--likelihood", "ml"],
+        &["--weights", "w"],
+        &["--robust"],
+    ] {
+        let arguments = [&formula[..], how].concat();
+        let effects = rows(&drawn(table, &arguments), "effects.csv");
+        let asked = [&arguments[..], &["--means", "g"]].concat();
+        let found = crate::on_table::json(table, &asked);
+        for mean in found["means"][0]["means"].as_array().unwrap() {
+            let level = mean["levels"][0].as_str().unwrap();
+            let own = row(&effects, &[("kind", "effect"), ("at", level)]);
+            for (name, column) in [("mean", "value"), ("low", "low"), ("high", "high")] {
+                crate::on_table::close(&mean[name], own[column].parse().unwrap(), 1e-10);
+            }
+        }
+    }
+}
+
 /// A column without an estimate of its own: the effect is not drawn where no row tells it.
 #[test]
 fn rejects_effects_that_cannot_be_estimated() {

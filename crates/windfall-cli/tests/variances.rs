@@ -38,7 +38,7 @@ fn all_close(found: &[Value], expected: &[f64], limit: f64) {
     }
 }
 
-const WEIGHED: [&str; 6] = [
+const WEIGHTED: [&str; 6] = [
     "--formula",
     "depth ~ V + variety",
     "--weights",
@@ -51,7 +51,7 @@ const WEIGHED: [&str; 6] = [
 /// `hatvalues`, car's `Anova`, sandwich's `vcovHC`, `predict(…, weights = 1)`.
 #[test]
 fn reference_weights_of_a_linear_model() {
-    let found = json(DENTS, &[&WEIGHED[..], &["--predict", "t.csv"]].concat());
+    let found = json(DENTS, &[&WEIGHTED[..], &["--predict", "t.csv"]].concat());
     let estimates = [
         2.066385386181877,
         5.096833403012853,
@@ -89,7 +89,7 @@ fn reference_weights_of_a_linear_model() {
     close(&prediction["predicted"], 2.97767818851232, 1e-12);
     close(&prediction["low"], 1.52491334638239, 1e-12);
     close(&prediction["high"], 4.43044303064225, 1e-12);
-    let robust = json(DENTS, &[&WEIGHED[..], &["--robust"]].concat());
+    let robust = json(DENTS, &[&WEIGHTED[..], &["--robust"]].concat());
     let errors = [
         0.219911803128377,
         0.508468269206452,
@@ -101,8 +101,8 @@ fn reference_weights_of_a_linear_model() {
 
 /// Parts of single rows: their errors are those of PRESS. The weights sum to 47.
 #[test]
-fn closed_form_cross_validation_is_weighed() {
-    let found = json(DENTS, &WEIGHED);
+fn closed_form_cross_validation_is_weighted() {
+    let found = json(DENTS, &WEIGHTED);
     let press = found["press"].as_f64().unwrap();
     let validation = &found["cross_validation"];
     close(&validation["rms"], (press / 47.0).sqrt(), 1e-10);
@@ -113,18 +113,18 @@ fn closed_form_cross_validation_is_weighed() {
 fn conserves_rows_that_are_repeated() {
     let once = "x,y,w\n1,2,3\n1,4,1\n2,5,2\n3,4,1\n3,9,1\n4,8,2\n";
     let often = "x,y\n1,2\n1,2\n1,2\n1,4\n2,5\n2,5\n3,4\n3,9\n4,8\n4,8\n";
-    let weighed = json(once, &["--formula", "y ~ x", "--weights", "w"]);
+    let weighted = json(once, &["--formula", "y ~ x", "--weights", "w"]);
     let repeated = json(often, &["--formula", "y ~ x"]);
     let estimates = column(&repeated["terms"], "estimate");
     let estimates: Vec<f64> = estimates.iter().map(|own| own.as_f64().unwrap()).collect();
-    all_close(&column(&weighed["terms"], "estimate"), &estimates, 1e-12);
+    all_close(&column(&weighted["terms"], "estimate"), &estimates, 1e-12);
     for sum in ["residual", "total"] {
         let expected = repeated[sum]["ss"].as_f64().unwrap();
-        close(&weighed[sum]["ss"], expected, 1e-12);
+        close(&weighted[sum]["ss"], expected, 1e-12);
     }
     let pure = |found: &Value| found["lack_of_fit"]["pure_error"]["ss"].clone();
-    close(&pure(&weighed), pure(&repeated).as_f64().unwrap(), 1e-12);
-    close(&weighed["lack_of_fit"]["pure_error"]["df"], 2.0, 1e-12);
+    close(&pure(&weighted), pure(&repeated).as_f64().unwrap(), 1e-12);
+    close(&weighted["lack_of_fit"]["pure_error"]["df"], 2.0, 1e-12);
 }
 
 /// lme4 1.1.31: `lmer(depth ~ V + (1 | fruit), weights = n)`; four times the weights are four

@@ -5,7 +5,7 @@ use crate::mixed::effects::{RandomEffects, fitted_values, random_effects};
 use crate::mixed::error::MixedError;
 use crate::mixed::evaluate::State;
 use crate::mixed::finding::MixedFinding;
-use crate::mixed::model::{MixedModel, prepare_mixed, prepare_weighed};
+use crate::mixed::model::{MixedModel, prepare_mixed, prepare_weighted};
 use crate::mixed::slope::{Projections, slopes};
 use crate::mixed::term::RandomTerm;
 use crate::mixed::theta::{relative_covariance, semidefinite_root};
@@ -146,14 +146,14 @@ pub fn fit_mixed(
 ///
 /// # Errors
 /// As [`fit_mixed`]; a number of weights other than that of rows.
-pub fn fit_mixed_weighed(
+pub fn fit_mixed_weighted(
     rows: (&[f64], &Weights),
     x: &DMatrix<f64>,
     x_names: &[String],
     terms: &[RandomTerm],
     options: &MixedOptions,
 ) -> Result<MixedFit, MixedError> {
-    fit_mixed_model(prepare_weighed(rows, x, x_names, terms)?, options)
+    fit_mixed_model(prepare_weighted(rows, x, x_names, terms)?, options)
 }
 
 /// Fits a prepared model, or returns [`MixedError::NoCriterion`].

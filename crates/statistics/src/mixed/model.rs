@@ -86,14 +86,14 @@ pub fn prepare_mixed(
     x_names: &[String],
     terms: &[RandomTerm],
 ) -> Result<MixedModel, MixedError> {
-    prepare_weighed((y, &Weights::default()), x, x_names, terms)
+    prepare_weighted((y, &Weights::default()), x, x_names, terms)
 }
 
 /// [`prepare_mixed`] of rows whose residual variance is σ² over their weight.
 ///
 /// # Errors
 /// As [`prepare_mixed`]; a number of weights other than that of rows.
-pub fn prepare_weighed(
+pub fn prepare_weighted(
     (y, weights): (&[f64], &Weights),
     x: &DMatrix<f64>,
     x_names: &[String],
@@ -111,7 +111,7 @@ pub fn prepare_weighed(
             x_names,
             &terms
                 .iter()
-                .map(|own| weighed(own, weights))
+                .map(|own| weighted(own, weights))
                 .collect::<Vec<_>>(),
         )?;
         model.weights = weights.clone();
@@ -153,7 +153,7 @@ pub fn prepare_weighed(
 }
 
 /// A term with its columns times the roots of weights.
-fn weighed(term: &RandomTerm, weights: &Weights) -> RandomTerm {
+fn weighted(term: &RandomTerm, weights: &Weights) -> RandomTerm {
     let columns = term.columns.iter();
     RandomTerm {
         columns: columns.map(|own| weights.weigh(own).into_owned()).collect(),

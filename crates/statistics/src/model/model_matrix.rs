@@ -30,7 +30,7 @@ pub enum ModelMatrix<'a> {
         kept: &'a Runs,
     },
     /// Rows of another times the roots of their weights.
-    Weighed {
+    Weighted {
         /// The other.
         of: &'a ModelMatrix<'a>,
         /// The weights.
@@ -46,10 +46,10 @@ impl<'a> From<&'a DMatrix<f64>> for ModelMatrix<'a> {
 
 impl<'a> ModelMatrix<'a> {
     /// Its rows times the roots of their weights.
-    pub fn weighed(&'a self, weights: &'a Weights) -> Self {
+    pub fn weighted(&'a self, weights: &'a Weights) -> Self {
         match weights.is_empty() {
             true => *self,
-            false => Self::Weighed { of: self, weights },
+            false => Self::Weighted { of: self, weights },
         }
     }
 }
@@ -60,7 +60,7 @@ impl ModelMatrix<'_> {
         match self {
             Self::Held(x) => x.nrows(),
             Self::Evaluated { kept, .. } => kept.len(),
-            Self::Weighed { of, .. } => of.rows(),
+            Self::Weighted { of, .. } => of.rows(),
         }
     }
 
@@ -69,7 +69,7 @@ impl ModelMatrix<'_> {
         match self {
             Self::Held(x) => x.ncols(),
             Self::Evaluated { frame, .. } => frame.names.len(),
-            Self::Weighed { of, .. } => of.columns(),
+            Self::Weighted { of, .. } => of.columns(),
         }
     }
 
@@ -91,7 +91,7 @@ impl ModelMatrix<'_> {
     pub fn block(&self, rows: Range<usize>) -> Result<DMatrix<f64>, Error> {
         match self {
             Self::Held(x) => Ok(x.rows_range(rows).into_owned()),
-            Self::Weighed { of, weights } => {
+            Self::Weighted { of, weights } => {
                 let first = rows.start;
                 let mut x = of.block(rows)?;
                 let height = x.nrows().max(1);

@@ -78,7 +78,7 @@ impl FormulaRows<'_> {
             }
             None => {
                 let x = self.x();
-                let reduced = reduce_evaluated(&x.weighed(&self.weights), &y);
+                let reduced = reduce_evaluated(&x.weighted(&self.weights), &y);
                 reduced.map_err(|error| error.of_rows(|row| self.kept.get(row)))
             }
         }

@@ -170,7 +170,7 @@ pub fn select(frame: &ModelFrame, reduced: &Reduced, options: &SelectionOptions)
 
 impl Selection {
     /// The same with the criteria of rows that weigh differently: each lacks a constant.
-    pub fn weighed(mut self, weights: &Weights) -> Self {
+    pub fn weighted(mut self, weights: &Weights) -> Self {
         let criteria = self
             .steps
             .iter_mut()

@@ -64,7 +64,7 @@ pub fn box_cox(
     design: &DMatrix<f64>,
     options: &BoxCoxOptions,
 ) -> Result<BoxCox, SampleError> {
-    box_cox_weighed(response, design, &Weights::default(), options)
+    box_cox_weighted(response, design, &Weights::default(), options)
 }
 
 /// [`box_cox`] of rows that weigh differently.
@@ -73,7 +73,7 @@ pub fn box_cox(
 ///
 /// # Errors
 /// As [`box_cox`].
-pub fn box_cox_weighed(
+pub fn box_cox_weighted(
     response: &[f64],
     design: &DMatrix<f64>,
     weights: &Weights,

@@ -60,7 +60,7 @@ pub fn cross_validate<'a>(
     let equal = Weights::default();
     let weights = parts.weights.unwrap_or(&equal);
     let (x, rows, weighted) = (x.into(), y.len(), weights.weigh(y));
-    let (x, y) = (x.weighed(weights), (&*weighted, weights));
+    let (x, y) = (x.weighted(weights), (&*weighted, weights));
     let count = match parts.units {
         Some(units) => units.iter().max().map_or(0, |last| last + 1),
         None => rows,

@@ -9,6 +9,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
+use windfall_statistics::coefficient::Estimated;
 use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::mean_contrasts::{JointTest, joint_test};
@@ -17,6 +18,20 @@ use windfall_statistics::model::model_rows::FormulaRows;
 use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::prediction::predict;
 use windfall_statistics::model::variance_groups::LevelInference;
+
+/// A sum of coefficients, with weights of all columns of the model.
+///
+/// * `covariance`: of the estimates; `inference`: where variances differ by level
+pub(crate) fn estimated(
+    weights: &[f64],
+    (fit, covariance): (&LinearFit, &[Vec<f64>]),
+    inference: Option<&LevelInference>,
+) -> Estimated {
+    match inference {
+        Some(own) => own.estimate(weights),
+        None => fit.estimate(weights, covariance),
+    }
+}
 
 /// Marginal means, slopes and their comparisons.
 ///
@@ -40,10 +55,7 @@ pub(crate) fn means(
                        costs: fit the chosen terms without --select";
         return Err(unusable("--means", problem));
     }
-    let estimate = |weights: &[f64]| match inference {
-        Some(own) => own.estimate(weights),
-        None => fit.estimate(weights, covariance),
-    };
+    let estimate = |weights: &[f64]| estimated(weights, (fit, covariance), inference);
     let of_sums = |sums: &DMatrix<f64>| {
         let own = sums.select_columns(&fit.columns);
         let size = covariance.len();

@@ -2,6 +2,7 @@
 
 use crate::figures::diagnostics::{Arrangement, Diagnostics, diagnostics_painting};
 use crate::figures::effects::{EffectModel, effects_painting};
+use crate::regress::after::estimated;
 use crate::regress::request::RegressRequest;
 use windfall_draw::files::{FigureFolder, write_paintings};
 use windfall_files::error::Error;
@@ -9,6 +10,7 @@ use windfall_files::table::data::Data;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_frame::chosen_rows;
 use windfall_statistics::model::model_rows::FormulaRows;
+use windfall_statistics::model::variance_groups::LevelInference;
 use windfall_statistics::residuals::diagnostics::{Influence, influence};
 use windfall_statistics::runs::Runs;
 
@@ -31,13 +33,15 @@ pub(crate) fn diagnostics_of(
 
 /// Draws a linear model.
 ///
+/// * `inference`: where variances differ by level
+///
 /// # Errors
 /// A figure cannot be written.
 pub(crate) fn draw_linear(
     folder: &FigureFolder,
     request: &RegressRequest,
     data: &Data,
-    (rows, fit): (&FormulaRows, &LinearFit),
+    (rows, fit, inference): (&FormulaRows, &LinearFit, Option<&LevelInference>),
     (response, lines, covariance): (&str, &Runs, &[Vec<f64>]),
 ) -> Result<(), Error> {
     let size = (fit.residual_df as f64, fit.columns.len());
@@ -59,7 +63,7 @@ pub(crate) fn draw_linear(
         table: &table,
         lines: &own.lines,
         residuals: &fit.residuals,
-        estimate: &|weights| fit.estimate(weights, covariance),
+        estimate: &|weights| estimated(weights, (fit, covariance), inference),
         confidence: request.confidence,
     })?);
     write_paintings(folder, &paintings).map(|_| ())

@@ -21,7 +21,7 @@ use windfall_files::table::data::Data;
 use windfall_statistics::coefficient::Estimated;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::mixed::constraint::VarianceParameter;
-use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_weighed};
+use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_weighted};
 use windfall_statistics::mixed::inference::{
     FTest, VarianceUncertainty, coefficient_tests, estimate, f_test, picking_contrast,
     variance_uncertainty,
@@ -298,7 +298,7 @@ fn fit(
         Some(name) => column_weights(&data.table, name, 0..rows.y.len()).map_err(told)?,
         None => Weights::default(),
     };
-    let fit = fit_mixed_weighed((&rows.y, &weights), &x, &names, &numbers, &options)
+    let fit = fit_mixed_weighted((&rows.y, &weights), &x, &names, &numbers, &options)
         .map_err(|error| told(StatisticsError::Mixed(error)))?;
     Ok(Fitted {
         rows,

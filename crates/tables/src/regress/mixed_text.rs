@@ -97,7 +97,7 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         formula(!whole),
     );
     if let Some(name) = &outcome.weights {
-        text += &(weights_text(name).trim_start().to_owned() + "\n");
+        text += &(weights_text(name) + "\n");
     }
     text += &format!(
         "{}\n\nTests of the terms, each after all others ({}):\n{}\n\n\

@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::model_rows::FormulaRows;
-use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox_weighed};
+use windfall_statistics::residuals::box_cox::{BoxCox, BoxCoxOptions, box_cox_weighted};
 use windfall_statistics::residuals::heteroscedasticity::koenker;
 use windfall_statistics::residuals::normality::{
     SHAPIRO_WILK_LARGEST, anderson_darling, shapiro_wilk,
@@ -90,7 +90,7 @@ pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
     let x = x.select_columns(&fit.columns);
     // Of one variance, and the columns with them; what the variance may change along is not.
     let residuals = &*fit.weights.weigh(&fit.residuals);
-    let weighed = match fit.weights.is_empty() {
+    let weighted = match fit.weights.is_empty() {
         true => Cow::Borrowed(&x),
         false => Cow::Owned(fit.weights.weigh_columns(&x)),
     };
@@ -109,7 +109,7 @@ pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
         ),
         (
             order,
-            durbin_watson(residuals, &weighed)
+            durbin_watson(residuals, &weighted)
                 .ok()
                 .map(|t| (t.statistic, t.p)),
         ),
@@ -123,7 +123,7 @@ pub fn residual_tests(rows: &FormulaRows, fit: &LinearFit) -> ResidualOutcome {
         confidence: fit.confidence,
         ..BoxCoxOptions::default()
     };
-    outcome.box_cox = box_cox_weighed(&rows.y, &weighed, &fit.weights, &options).ok();
+    outcome.box_cox = box_cox_weighted(&rows.y, &weighted, &fit.weights, &options).ok();
     outcome
 }
 

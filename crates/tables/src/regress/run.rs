@@ -176,7 +176,7 @@ fn regress_linear(
     let reduced = rows.reduced().map_err(told)?;
     let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
     let selection = match &request.selection() {
-        Some(options) => select(&rows.frame, &reduced, options).weighed(&rows.weights),
+        Some(options) => select(&rows.frame, &reduced, options).weighted(&rows.weights),
         None => Selection {
             terms: every,
             steps: Vec::new(),
@@ -184,8 +184,8 @@ fn regress_linear(
     };
     let wanted = columns_of(&rows, &selection.terms);
     let (x, frame) = (rows.x(), &rows.frame);
-    let weighed = (x, &rows.y[..], &rows.weights);
-    let fit = fit_weighted(frame, weighed, &reduced, &wanted, request.confidence);
+    let weighted = (x, &rows.y[..], &rows.weights);
+    let fit = fit_weighted(frame, weighted, &reduced, &wanted, request.confidence);
     let fit = fit.map_err(told)?;
     let inference = levels.as_ref().map(|own| own.inference(&rows, &fit));
     let inference = inference.transpose().map_err(told)?;
@@ -207,7 +207,13 @@ fn regress_linear(
     let lines = data.lines.at(&rows.kept);
     if let Some(folder) = &request.figures {
         let shown = (outcome.response.as_str(), &lines, &outcome.covariance[..]);
-        draw_linear(folder, request, data, (&rows, &fit), shown)?;
+        draw_linear(
+            folder,
+            request,
+            data,
+            (&rows, &fit, inference.as_ref()),
+            shown,
+        )?;
     }
     outcome.influence = RowOutcomes::new(Influence::of(fit, rows.y), lines);
     Ok(outcome)
@@ -233,8 +239,8 @@ fn infer_levels(
         let reduced = rows.reduced()?;
         let every: Vec<usize> = (0..rows.frame.terms.len()).collect();
         let wanted = columns_of(&rows, &every);
-        let weighed = (rows.x(), &rows.y[..], &rows.weights);
-        let fit = fit_weighted(&rows.frame, weighed, &reduced, &wanted, request.confidence)?;
+        let weighted = (rows.x(), &rows.y[..], &rows.weights);
+        let fit = fit_weighted(&rows.frame, weighted, &reduced, &wanted, request.confidence)?;
         Ok((rows, reduced, fit))
     });
     let summed = summed.transpose().map_err(told)?;

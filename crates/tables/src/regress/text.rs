@@ -143,10 +143,10 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     }
     text += &text_of_rows(&outcome.terms, &TERMS, &[0]);
     if let Some(name) = &outcome.weights {
-        text += &weights_text(name);
+        text += &format!("\n{}", weights_text(name));
     }
     if outcome.robust {
-        text += "\nStandard errors that hold for unequal variances (HC3).\n";
+        text += "\nStandard errors that hold for unequal variances (HC3).";
     }
     if let Some(variances) = &outcome.level_variances {
         text += &variances_text(outcome, variances);
@@ -214,10 +214,12 @@ fn rest_text(outcome: &RegressOutcome) -> String {
 
 /// What weights mean.
 pub(crate) fn weights_text(name: &str) -> String {
-    format!(
-        "\nRows weigh {name}: the variance of a row is the residual variance over its weight. Tests\n\
-         of residuals are of residuals times its root, a further observation has weight 1.\n"
-    )
+    let told = format!(
+        "Rows are weighted by {name}: the variance of a row is the residual variance divided by \
+         its weight. Tests of residuals use residuals times the square root of the weight; a \
+         further observation has weight 1."
+    );
+    paragraph(&told, 0)
 }
 
 fn steps_text(steps: &[StepOutcome]) -> String {
