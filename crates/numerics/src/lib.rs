@@ -4,6 +4,7 @@
 //!
 //! This crate knows no contact law, no instrument and no file.
 
+pub mod as_written;
 mod box_quadratic;
 pub mod cholesky;
 pub mod double_double;

@@ -211,6 +211,20 @@ impl Numbers {
             }
         }
     }
+
+    /// Writes those of some rows as doubles.
+    ///
+    /// * `into`: as many as there are rows
+    pub fn fill(&self, rows: Range<usize>, into: &mut [f64]) {
+        match &self.0 {
+            Kept::Doubles(values) => into.copy_from_slice(&values[rows]),
+            Kept::Decimals(all, places) => {
+                let scale = scale_of(*places);
+                let pairs = into.iter_mut().zip(&all[rows]);
+                pairs.for_each(|(into, own)| *into = double(*own, scale));
+            }
+        }
+    }
 }
 
 /// Numbers as decimals of as few places as all of them need.
@@ -288,5 +302,8 @@ mod tests {
         let rows = [1, 2, 5].into_iter().collect();
         assert_eq!(numbers.range(&rows), (0.125, 2.0));
         assert_eq!(numbers.within(9..11).as_ref(), [0.5, 4.5]);
+        let mut few = [0.0; 2];
+        numbers.fill(9..11, &mut few);
+        assert_eq!(few, [0.5, 4.5]);
     }
 }

@@ -3,8 +3,8 @@
 //! Values that share many leading digits lose them in plain arithmetic: here sums are
 //! pairs of numbers, and such values are read as the decimals they were written as.
 
-use crate::as_written::as_written;
 use rayon::prelude::*;
+use windfall_numerics::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// Sum of values.

@@ -4,7 +4,6 @@
 //! categories. This crate opens no file and knows no fruit.
 
 pub mod accurate_sum;
-pub mod as_written;
 pub mod coefficient;
 pub mod compare;
 pub mod distribution;

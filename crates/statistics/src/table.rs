@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::numbers::Numbers;
+use foldhash::fast::RandomState;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use windfall_numerics::unit::nearest_name::nearest_names;
@@ -86,7 +87,7 @@ impl Categories {
 /// Levels as they come, cell by cell.
 #[derive(Clone, Debug, Default)]
 pub struct LevelCodes {
-    known: HashMap<String, usize>,
+    known: HashMap<String, usize, RandomState>,
     codes: Vec<Option<usize>>,
 }
 

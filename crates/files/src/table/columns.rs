@@ -7,6 +7,7 @@ use crate::error::{Error, Place};
 use crate::table::csv::{Form, Open, each_row, next_block};
 use crate::table::records::Block;
 use crate::table::write::plain_cell;
+use foldhash::fast::RandomState;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -237,7 +238,7 @@ enum PartCells<'a> {
 /// Texts of a column in a block.
 #[derive(Default)]
 struct PartText<'a> {
-    known: HashMap<Cow<'a, str>, usize>,
+    known: HashMap<Cow<'a, str>, usize, RandomState>,
     texts: Vec<Cow<'a, str>>,
     codes: Vec<Option<usize>>,
 }

@@ -113,8 +113,11 @@ fn zeros_before(bytes: &[u8], decimal: u8, count: usize) -> usize {
 #[inline]
 fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
     // Up to eight digits at a time, shifted up so that zeros precede them.
-    while let Some(eight) = bytes.get(at..at + 8) {
-        let word = u64::from_le_bytes(eight.try_into().unwrap_or([0; 8]));
+    loop {
+        let left = bytes.get(at..).unwrap_or_default();
+        let word = left
+            .first_chunk()
+            .map_or_else(|| short_word(left), |eight| u64::from_le_bytes(*eight));
         let count = leading_digits(word);
         if count == 0 {
             return at;
@@ -129,28 +132,26 @@ fn digits(bytes: &[u8], mut at: usize, mantissa: &mut u64) -> usize {
             return at;
         }
     }
-    while let Some(digit) = bytes
-        .get(at)
-        .map(|b| b.wrapping_sub(b'0'))
-        .filter(|d| *d < 10)
-    {
-        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-        at += 1;
+}
+
+/// Fewer than eight bytes, the first one lowest, with zeros above them.
+#[inline]
+fn short_word(bytes: &[u8]) -> u64 {
+    // Reads that overlap need no loop.
+    if let (Some(first), Some(last)) = (bytes.first_chunk(), bytes.last_chunk()) {
+        let last = u64::from(u32::from_le_bytes(*last)) << (8 * (bytes.len() - 4));
+        return u64::from(u32::from_le_bytes(*first)) | last;
     }
-    at
+    let byte = |place: usize| u64::from(bytes[place]) << (8 * place);
+    match bytes.len() {
+        0 => 0,
+        length => byte(0) | byte(length / 2) | byte(length - 1),
+    }
 }
 
 /// Powers of ten as integers.
 const INTEGER_POWERS: [u64; 9] = [
-    1,
-    10,
-    100,
-    1_000,
-    10_000,
-    100_000,
-    1_000_000,
-    10_000_000,
-    100_000_000,
+    1, 10, 100, 1000, 10000, 100000, 1000000, 10000000, 100000000,
 ];
 
 /// Length of the run of digits at the low end of eight bytes.
@@ -178,17 +179,15 @@ fn exponent(bytes: &[u8], mut at: usize) -> Option<(i32, usize)> {
     let sign = bytes.get(at);
     let negative = sign == Some(&b'-');
     at += usize::from(matches!(sign, Some(b'-' | b'+')));
-    let start = at;
-    let mut value = 0_i32;
-    while let Some(digit) = bytes
-        .get(at)
-        .map(|b| b.wrapping_sub(b'0'))
-        .filter(|d| *d < 10)
-    {
-        value = (value * 10 + i32::from(digit)).min(99_999);
-        at += 1;
-    }
-    (at > start).then_some((if negative { -value } else { value }, at))
+    let mut value = 0;
+    let end = digits(bytes, at, &mut value);
+    let value = match end - at {
+        0 => return None,
+        1..=9 => value as i32,
+        // Too large, or zeros, which the standard library sorts out.
+        _ => 99_999,
+    };
+    Some((if negative { -value } else { value }, end))
 }
 
 /// Parses with the standard library; `None` if not finite.

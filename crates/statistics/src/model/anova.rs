@@ -6,10 +6,11 @@ use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::Reduced;
 use crate::weights::Weights;
+use foldhash::quality::FixedState;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::hash::{DefaultHasher, Hasher};
+use std::hash::{BuildHasher, Hasher};
 
 /// Which models a term is tested between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -272,16 +273,14 @@ pub fn lack_of_fit<'a>(
     }))
 }
 
-/// Hash of the settings of a row.
-fn key_of(x: &DMatrix<f64>, row: usize, columns: &[usize]) -> [u64; 2] {
-    let mut hasher = DefaultHasher::new();
+/// Hash of the settings of a row, of which there are two.
+fn key_of(x: &DMatrix<f64>, row: usize, columns: &[usize], which: u64) -> u64 {
+    let mut hasher = FixedState::with_seed(which).build_hasher();
     for column in columns {
         // Zeros of both signs are one setting.
         hasher.write_u64((x[(row, *column)] + 0.0).to_bits());
     }
-    let first = hasher.finish();
-    hasher.write_u8(0);
-    [first, hasher.finish()]
+    hasher.finish()
 }
 
 /// Rows in the order of their hashes, without most of those that are alone with theirs.
@@ -289,7 +288,7 @@ fn repeated(x: &ModelMatrix, columns: &[usize]) -> Result<Vec<([u64; 2], usize)>
     // A part of each hash takes little memory and shows nearly all that are alone.
     let parts = x.each_block(|_, x| {
         let rows = 0..x.nrows();
-        rows.map(|row| key_of(x, row, columns)[0] as u32)
+        rows.map(|row| key_of(x, row, columns, 0) as u32)
             .collect::<Vec<u32>>()
     })?;
     let rows = twice(&parts.concat());
@@ -297,9 +296,12 @@ fn repeated(x: &ModelMatrix, columns: &[usize]) -> Result<Vec<([u64; 2], usize)>
     let keyed = blocks.into_par_iter().map(|rows| {
         let start = rows[0] / BLOCK * BLOCK;
         let x = x.block(start..(start + BLOCK).min(x.rows()))?;
-        let keyed = rows
-            .iter()
-            .map(|row| (key_of(&x, row - start, columns), *row));
+        let keyed = rows.iter().map(|row| {
+            (
+                [0, 1].map(|own| key_of(&x, row - start, columns, own)),
+                *row,
+            )
+        });
         Ok(keyed.collect::<Vec<_>>())
     });
     let keyed: Vec<Result<Vec<_>, Error>> = keyed.collect();

@@ -1,6 +1,5 @@
 //! Linear models: estimates with their errors, and how good they are.
 
-use crate::as_written::as_written;
 use crate::coefficient::{Coefficient, Estimated};
 use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
@@ -12,6 +11,7 @@ use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
+use windfall_numerics::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// A fitted linear model.

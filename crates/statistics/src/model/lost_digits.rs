@@ -1,10 +1,10 @@
 //! What rounding to doubles takes from columns of a model: high powers of one column depend so
 //! nearly on each other that the last digit decides.
 
-use crate::as_written::as_written;
 use crate::model::encoding::Encoding;
 use crate::model::formula_syntax::{Kind, Node, Operator};
 use crate::table::Table;
+use windfall_numerics::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// Columns with what is to be added to them in each row: of products of whole powers of columns,

@@ -35,7 +35,11 @@ pub struct TermColumns {
 /// Model matrix of other rows; errors as in
 /// [`model_rows`](crate::model::model_rows::model_rows), and for new levels.
 pub fn prediction_rows(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>, Error> {
-    matrix(frame, table)
+    let plain = |name: &str, own: &mut [f64]| {
+        table.numbers(name)?.fill(0..table.rows(), own);
+        Ok(())
+    };
+    matrix(frame, table, plain)
 }
 
 /// Some rows of a table, in their order; the table itself where these are all.
@@ -121,19 +125,23 @@ fn first_category(formula: &Formula, atoms: &[Encoding]) -> Option<usize> {
         .map(|term| term[0])
 }
 
-fn matrix(frame: &ModelFrame, table: &Table) -> Result<DMatrix<f64>, Error> {
+/// A model matrix.
+///
+/// * `table`: what terms are evaluated on
+/// * `plain`: writes the numbers of a column that is a term by itself
+pub(crate) fn matrix(
+    frame: &ModelFrame,
+    table: &Table,
+    plain: impl Fn(&str, &mut [f64]) -> Result<(), Error>,
+) -> Result<DMatrix<f64>, Error> {
     let rows = table.rows();
     let mut x = DMatrix::zeros(rows, frame.names.len());
     if frame.intercept {
         x.column_mut(0).fill(1.0);
     }
     for term in &frame.terms {
-        // A column as it is needs no copy on its way.
-        if let [(atom, _)] = &term.atoms[..]
-            && let Some(name) = frame.atoms[*atom].plain_column()
-        {
-            let numbers = table.numbers(name)?.values();
-            x.column_mut(term.columns.start).copy_from_slice(&numbers);
+        if let Some(name) = frame.plain_column(term) {
+            plain(name, x.column_mut(term.columns.start).as_mut_slice())?;
             continue;
         }
         let mut columns: Vec<Vec<f64>> = Vec::new();
@@ -170,9 +178,27 @@ fn multiplied(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 impl ModelFrame {
+    /// The column of the table that a term is, where it is one.
+    fn plain_column(&self, term: &TermColumns) -> Option<&str> {
+        match &term.atoms[..] {
+            [(atom, _)] => self.atoms[*atom].plain_column(),
+            _ => None,
+        }
+    }
+
     /// Columns of the table that it is made from.
     pub fn columns(&self) -> Vec<String> {
-        let used = self.terms.iter().flat_map(|term| &term.atoms);
+        self.sources(|_| true)
+    }
+
+    /// Columns of the table that terms are evaluated on, other than those that are columns.
+    pub(crate) fn evaluated_columns(&self) -> Vec<String> {
+        self.sources(|term| self.plain_column(term).is_none())
+    }
+
+    fn sources(&self, of: impl Fn(&TermColumns) -> bool) -> Vec<String> {
+        let terms = self.terms.iter().filter(|term| of(term));
+        let used = terms.flat_map(|term| &term.atoms);
         used.flat_map(|(atom, _)| self.atoms[*atom].sources())
             .collect()
     }

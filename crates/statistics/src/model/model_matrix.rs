@@ -2,7 +2,7 @@
 //! the table that it is made from.
 
 use crate::error::Error;
-use crate::model::model_frame::{ModelFrame, prediction_rows};
+use crate::model::model_frame::{ModelFrame, matrix};
 use crate::numbers::Numbers;
 use crate::runs::Runs;
 use crate::table::{Categories, Cells, Column, Table};
@@ -100,7 +100,7 @@ impl ModelMatrix<'_> {
                 Ok(x)
             }
             Self::Evaluated { frame, table, kept } => {
-                let columns = frame.columns();
+                let columns = frame.evaluated_columns();
                 let own = table
                     .columns
                     .iter()
@@ -109,15 +109,18 @@ impl ModelMatrix<'_> {
                     name: own.name.clone(),
                     cells: within(&own.cells, kept, rows.clone()),
                 });
-                // Of a model without columns, a nameless one says how many rows there are.
+                // Where none is, a nameless one says how many rows there are.
                 let none = columns.is_empty().then(|| Column {
                     name: String::new(),
                     cells: Cells::Numbers(vec![0.0; rows.len()].into()),
                 });
-                let table = Table {
+                let own = Table {
                     columns: own.chain(none).collect(),
                 };
-                let x = prediction_rows(frame, &table);
+                let x = matrix(frame, &own, |name, column| {
+                    fill(table.numbers(name)?, kept, rows.clone(), column);
+                    Ok(())
+                });
                 x.map_err(|error| error.of_rows(|row| Some(rows.start + row)))
             }
         }
@@ -144,22 +147,29 @@ impl ModelMatrix<'_> {
 
 /// Cells of some of the rows that are kept.
 fn within(cells: &Cells, kept: &Runs, rows: Range<usize>) -> Cells {
-    let runs = kept.within(rows);
     match cells {
         Cells::Numbers(numbers) => {
-            let mut values = Vec::new();
-            for run in runs {
-                values.extend_from_slice(&numbers.within(run));
-            }
-            Cells::Numbers(Numbers::from(values))
+            let mut values = vec![0.0; rows.len()];
+            fill(numbers, kept, rows, &mut values);
+            Cells::Numbers(values.into())
         }
         Cells::Categories(own) => Cells::Categories(Categories {
             levels: own.levels.clone(),
-            codes: runs
+            codes: kept
+                .within(rows)
                 .flat_map(|run| own.codes[run].iter().copied())
                 .collect(),
             ordered: own.ordered,
         }),
+    }
+}
+
+/// Numbers of some of the rows that are kept.
+fn fill(numbers: &Numbers, kept: &Runs, rows: Range<usize>, mut into: &mut [f64]) {
+    for run in kept.within(rows) {
+        let (own, rest) = into.split_at_mut(run.len());
+        numbers.fill(run, own);
+        into = rest;
     }
 }
 

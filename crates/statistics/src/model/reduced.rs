@@ -5,11 +5,11 @@
 //! reduced in twice the precision of doubles, larger ones in parallel blocks that do not
 //! depend on the number of threads.
 
-use crate::as_written::as_written;
 use crate::error::Error;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use windfall_numerics::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// Up to this many products the triangle is found in twice the precision.

@@ -168,7 +168,7 @@ fn from_parts(
         sums[part(row)] += weights.root(row) * y;
         totals[part(row)] += weights.weight(row);
     }
-    let mut fits = Vec::with_capacity(folds);
+    let (mut error, mut means) = (0.0, Vec::with_capacity(folds));
     for fold in 0..folds {
         let others = (0..folds).filter(|other| *other != fold);
         let triangles = others.clone().map(|other| by_part[other].clone());
@@ -176,21 +176,27 @@ fn from_parts(
         let Some(solved) = solved(&joined(triangles.collect(), rows, width)) else {
             return Ok(None);
         };
+        error += squared_errors(&by_part[fold], width, &solved);
         let sum: f64 = others.clone().map(|other| sums[other]).sum();
         let total: f64 = others.map(|other| totals[other]).sum();
-        fits.push((solved, sum / total));
+        means.push(sum / total);
     }
-    let squares = x.each_block(|own, x| {
-        let (mut error, mut total) = (0.0, 0.0);
-        for row in own.clone() {
-            let (solved, mean) = &fits[part(row)];
-            error += (y[row] - predicted(x, row - own.start, solved)).powi(2);
-            total += (y[row] - weights.root(row) * mean).powi(2);
+    let squares = y.iter().enumerate();
+    let squares = squares.map(|(row, y)| (y - weights.root(row) * means[part(row)]).powi(2));
+    Ok(Some((error, squares.sum())))
+}
+
+/// Sum of the squared errors of predictions for the rows of a triangle: it keeps the lengths of
+/// their combinations.
+fn squared_errors(triangle: &[f64], width: usize, solved: &Solved) -> f64 {
+    let mut left = triangle[(width - 1) * width..].to_vec();
+    for (column, estimate) in solved.columns.iter().zip(&solved.estimates) {
+        let own = &triangle[column * width..(column + 1) * width];
+        for (left, own) in left.iter_mut().zip(own) {
+            *left -= own * estimate.value();
         }
-        (error, total)
-    })?;
-    let added = |(error, total): Squares, own: Squares| (error + own.0, total + own.1);
-    Ok(Some(squares.into_iter().fold((0.0, 0.0), added)))
+    }
+    left.iter().map(|own| own * own).sum()
 }
 
 /// Fisher and Yates' shuffle.

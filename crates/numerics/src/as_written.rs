@@ -1,6 +1,6 @@
 //! Numbers as somebody wrote them: decimals, not their nearest doubles.
 
-use windfall_numerics::double_double::{DoubleDouble, two_sum};
+use crate::double_double::{DoubleDouble, two_sum};
 
 /// The shortest decimal number that reads as this double: "1000000000000.4"
 /// where the double is 1000000000000.4000244.
