@@ -5,6 +5,7 @@ use crate::frame::{Frame, Rectangle};
 use crate::panel::Panel;
 use crate::panel_drawing::{Labels, draw_legend, draw_within, legend_height, range};
 use crate::svg::{Anchor, Drawing, Ink};
+use std::collections::BTreeSet;
 
 /// Room around a panel and above all of them; px.
 const RIGHT: f64 = 14.0;
@@ -210,8 +211,13 @@ fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
 fn with_short_labels(panel: &Panel, width: f64) -> Panel {
     let most = ((width - 24.0) / LABELS.character) as usize;
     let mut panel = panel.clone();
+    let given = panel.series.iter().map(|own| own.label.clone());
+    let given: Vec<String> = given.filter(|own| !own.is_empty()).collect();
+    let mut short = cut_apart(&given, most).into_iter();
     for series in &mut panel.series {
-        series.label = cut(&series.label, most);
+        if !series.label.is_empty() {
+            series.label = short.next().unwrap_or_default();
+        }
         series.points.clear();
     }
     panel
@@ -262,7 +268,36 @@ fn axis_of(scale: &Scale, (low, high): (f64, f64), ticks: usize, room: f64) -> A
 /// Names cut so that each fits into a width; px.
 fn fitting(names: &[String], width: f64) -> Vec<String> {
     let most = ((width / CHARACTER) as usize).clamp(2, LONGEST_NAME);
-    names.iter().map(|name| cut(name, most)).collect()
+    cut_apart(names, most)
+}
+
+/// Names of at most so many characters. What all of them begin or end with is left out where they
+/// could not be told apart otherwise.
+fn cut_apart(names: &[String], most: usize) -> Vec<String> {
+    let all_cut = |names: &[String]| names.iter().map(|own| cut(own, most)).collect::<Vec<_>>();
+    let different = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len();
+    let own = all_cut(names);
+    if different(&own) == different(names) {
+        return own;
+    }
+    let all: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
+    let shortest = all.iter().map(Vec::len).min().unwrap_or(0);
+    let first = &all[0];
+    // Words stay whole.
+    let same = |at: &dyn Fn(&[char], usize) -> char, most: usize| {
+        let alike = |place: &usize| all.iter().all(|own| at(own, *place) == at(first, *place));
+        let alike = (0..most).take_while(alike).count();
+        let between = |place: &usize| !at(first, place - 1).is_alphanumeric();
+        (1..=alike).rev().find(between).unwrap_or(0)
+    };
+    let front = same(&|own, place| own[place], shortest);
+    let back = same(&|own, place| own[own.len() - 1 - place], shortest - front);
+    let inner = all.iter().map(|own| {
+        let mark = |any: usize| if any > 0 { "…" } else { "" };
+        let inner: String = own[front..own.len() - back].iter().collect();
+        format!("{}{inner}{}", mark(front), mark(back))
+    });
+    all_cut(&inner.collect::<Vec<_>>())
 }
 
 /// A text of at most so many characters.
@@ -337,6 +372,36 @@ mod tests {
         let mut own = panel(vec![(0.0, 1.0), (1.0, 2.0)]);
         own.up = Scale::Reaching(0.0, 0.0);
         assert_eq!(axis_of(&own.up, (1.0, 2.0), 5, 0.06).low, 0.0);
+    }
+
+    /// Names that begin alike are told apart by what differs.
+    #[test]
+    fn closed_form_names_are_cut_apart() {
+        let cut = |names: &[&str]| {
+            cut_apart(
+                &names
+                    .iter()
+                    .map(|own| (*own).to_owned())
+                    .collect::<Vec<_>>(),
+                9,
+            )
+            .join(" | ")
+        };
+        let lots = [
+            "Golden Delicious (lot 1 of the store)",
+            "Golden Delicious (lot 12 of the store)",
+        ];
+        assert_eq!(cut(&lots), "…1… | …12…");
+        assert_eq!(cut(&["Gala of the north", "Fuji"]), "Gala of … | Fuji");
+        assert_eq!(
+            cut(&["aaaaaaaaaaaa1", "aaaaaaaaaaaa2"]),
+            "aaaaaaaa… | aaaaaaaa…"
+        );
+        assert_eq!(
+            cut(&["a b c d e f g h 1", "a b c d e f g h 1"]),
+            "a b c d … | a b c d …"
+        );
+        assert_eq!(cut(&[]), "");
     }
 
     #[test]

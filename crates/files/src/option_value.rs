@@ -12,6 +12,22 @@ pub fn unusable(option: impl Into<String>, problem: impl Into<String>) -> Error 
     }
 }
 
+/// Parts between marks, of which those in backticks are none.
+pub fn parts(text: &str, mark: char) -> impl Iterator<Item = &str> {
+    let mut quoted = false;
+    text.split(move |own| {
+        quoted ^= own == '`';
+        own == mark && !quoted
+    })
+}
+
+/// A name without the blanks and the backticks around it, as in a formula.
+pub fn plain_name(text: &str) -> String {
+    let text = text.trim();
+    let inner = text.strip_prefix('`').and_then(|own| own.strip_suffix('`'));
+    inner.unwrap_or(text).to_owned()
+}
+
 /// A quantity in SI.
 ///
 /// # Errors
@@ -64,4 +80,17 @@ pub fn chosen<T: Copy>(option: &str, word: &str, choices: &[(&str, T)]) -> Resul
 pub fn word_of<T: Copy + PartialEq>(choices: &[(&str, T)], value: T) -> String {
     let found = choices.iter().find(|(_, known)| *known == value);
     found.map_or_else(String::new, |(word, _)| (*word).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closed_form_names_in_backticks() {
+        let names = |text: &str| parts(text, ',').map(plain_name).collect::<Vec<_>>();
+        assert_eq!(names("low, high"), ["low", "high"]);
+        assert_eq!(names("`1,5 cm`,`` , 3`"), ["1,5 cm", "", "3`"]);
+        assert_eq!(parts("a|`b|c`", '|').collect::<Vec<_>>(), ["a", "`b|c`"]);
+    }
 }

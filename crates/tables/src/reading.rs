@@ -5,7 +5,7 @@ use crate::design::file::read_coding;
 use crate::option_words::trimmed;
 use std::path::Path;
 use windfall_files::error::{Error, Place};
-use windfall_files::option_value::unusable;
+use windfall_files::option_value::{parts, plain_name, unusable};
 use windfall_files::table::data::{Data, DataFile, MISSING, Wanted, open_data};
 use windfall_statistics::table::Cells;
 
@@ -17,7 +17,7 @@ pub struct ReadingOptions {
     #[cfg_attr(feature = "clap", arg(long = "missing", value_name = "WORDS", value_delimiter = ',', value_parser = trimmed, default_value = MISSING))]
     pub missing: Vec<String>,
     /// The levels of a column in their order, the reference first: 'dose=low,medium,high'; may be
-    /// repeated; as the header of a design says if left out
+    /// repeated; a level with a comma stands in backticks; as the header of a design says if left out
     #[cfg_attr(feature = "clap", arg(long = "levels", value_name = "COLUMN=LEVEL,…"))]
     pub levels: Vec<String>,
 }
@@ -67,10 +67,11 @@ impl ReadingOptions {
 /// `COLUMN=LEVEL,LEVEL`.
 fn declared(text: &str) -> Result<(String, Vec<String>), Error> {
     let wrong = |problem: &str| unusable(format!("--levels '{text}'"), problem);
-    let (column, levels) = text
-        .split_once('=')
+    let column = parts(text, '=').next().unwrap_or_default();
+    let levels = text[column.len()..]
+        .strip_prefix('=')
         .ok_or_else(|| wrong("expected a column and its levels: dose=low,medium,high"))?;
-    let levels: Vec<String> = levels.split(',').map(|own| own.trim().to_owned()).collect();
+    let levels: Vec<String> = parts(levels, ',').map(plain_name).collect();
     if levels.len() < 2 || levels.iter().any(String::is_empty) {
         return Err(wrong("expected two levels or more, separated by commas"));
     }
@@ -78,7 +79,7 @@ fn declared(text: &str) -> Result<(String, Vec<String>), Error> {
     {
         return Err(wrong(&format!("\"{}\" stands there twice", levels[place])));
     }
-    Ok((column.trim().to_owned(), levels))
+    Ok((plain_name(column), levels))
 }
 
 /// Gives the levels of a column the order that was declared.

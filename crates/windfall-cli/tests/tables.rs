@@ -121,6 +121,48 @@ fn closed_form_levels_have_the_order_that_was_declared() {
     assert_eq!(terms(&told)[1..], ["dose[medium]", "dose[high]"]);
 }
 
+/// Names and levels with a comma or a bar stand in backticks, as in formulas.
+#[test]
+fn repeats_names_in_backticks() {
+    let plain = "pad,size,k\nu,a,1\nu,a,1.2\nu,b,2\nv,b,2.3\nv,a,2.9\nv,b,3.1\n";
+    let odd = plain
+        .replace(",a,", ",\"1,5 cm\",")
+        .replace(",b,", ",\"2,5 cm\",");
+    let odd = odd.replace("pad,size", "p|ad,\"size,cm\"");
+    let means = |table: &str, names: [&str; 4]| {
+        let [pad, size, a, b] = names;
+        let terms = format!("{pad} * {size}");
+        let (asked, levels) = (format!("{size} | {pad}"), format!("{size}={b},{a}"));
+        let found = on_table::json(
+            table,
+            &[
+                "regress",
+                "t.csv",
+                "--response",
+                "k",
+                "--terms",
+                &terms,
+                "--means",
+                &asked,
+                "--levels",
+                &levels,
+            ],
+        );
+        found["means"][0]["means"].clone()
+    };
+    let expected = means(plain, ["pad", "size", "a", "b"]);
+    let found = means(&odd, ["`p|ad`", "`size,cm`", "`1,5 cm`", "`2,5 cm`"]);
+    assert_eq!(found[0]["levels"], serde_json::json!(["u", "2,5 cm"]));
+    for (own, other) in found
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(expected.as_array().unwrap())
+    {
+        assert_eq!(own["mean"], other["mean"]);
+    }
+}
+
 #[test]
 fn rejects_levels_without_order_or_rows() {
     for (arguments, said) in [

@@ -8,13 +8,6 @@
 /// # Source
 /// Piepho (2004), An algorithm for a letter-based representation of all-pairwise
 /// comparisons, J. Comput. Graph. Stat. 13: insert and absorb.
-///
-/// # Example
-/// ```
-/// use windfall_statistics::compare::compact_letters::compact_letters;
-/// // only the largest and the smallest differ
-/// assert_eq!(compact_letters(&[1.0, 3.0, 2.0], &[(0, 1)]), ["b", "a", "ab"]);
-/// ```
 pub fn compact_letters(means: &[f64], differ: &[(usize, usize)]) -> Vec<String> {
     // from large to small, so that the letters run along with the means
     let mut order: Vec<usize> = (0..means.len()).collect();
@@ -86,6 +79,9 @@ mod tests {
         assert_eq!(compact_letters(&[2.0, 1.0], &[]), ["a", "a"]);
         let all = [(0, 1), (0, 2), (1, 2)];
         assert_eq!(compact_letters(&[1.0, 3.0, 2.0], &all), ["c", "a", "b"]);
+        // Only the largest and the smallest differ.
+        let ends = compact_letters(&[1.0, 3.0, 2.0], &[(0, 1)]);
+        assert_eq!(ends, ["b", "a", "ab"]);
     }
 
     /// A group that differs from none of two that differ carries both letters;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use windfall_files::error::Error;
-use windfall_files::option_value::unusable;
+use windfall_files::option_value::{parts, plain_name, unusable};
 use windfall_statistics::model::mean_contrasts::Adjustment;
 
 /// Which means of a model are asked for, and how they are compared.
@@ -11,7 +11,8 @@ use windfall_statistics::model::mean_contrasts::Adjustment;
 pub struct MeansRequest {
     /// Marginal means of a category, or of several ('variety,dose'), with their differences: over
     /// the levels of the other categories in equal parts, at the mean of each column of numbers;
-    /// 'dose | variety' compares doses within each variety; may be repeated
+    /// 'dose | variety' compares doses within each variety; names with a comma or a bar stand in
+    /// backticks; may be repeated
     #[cfg_attr(feature = "clap", arg(long = "means", value_name = "COLUMNS"))]
     pub means: Vec<String>,
     /// Slopes on a column of numbers ('V'), at levels ('V,variety'), within others
@@ -229,14 +230,11 @@ fn columns(text: &str, slope: bool) -> Result<Columns, Error> {
         true => format!("--slopes '{text}'"),
         false => format!("--means '{text}'"),
     };
-    let names =
-        |part: &str| -> Vec<String> { part.split(',').map(|own| own.trim().to_owned()).collect() };
-    let (of, within) = match text.split_once('|') {
-        Some((of, within)) => (names(of), names(within)),
-        None => (names(text), Vec::new()),
-    };
+    let mut sides = parts(text, '|').map(|side| parts(side, ',').map(plain_name).collect());
+    let of: Vec<String> = sides.next().unwrap_or_default();
+    let within: Vec<String> = sides.next().unwrap_or_default();
     let every: Vec<&String> = of.iter().chain(&within).collect();
-    if every.iter().any(|own| own.is_empty() || own.contains('|')) {
+    if every.iter().any(|own| own.is_empty()) || sides.next().is_some() {
         let problem = match slope {
             true => "expected a column of numbers and categories: V,dose | variety",
             false => "expected columns separated by commas: variety,dose",

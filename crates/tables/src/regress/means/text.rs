@@ -159,7 +159,11 @@ fn text_of(own: &MeansOutcome) -> String {
         text += &text_of_rows(&own.tests, columns, &[0]);
     }
     if !own.differences.is_empty() {
-        text += &format!("\n\nDifferences ({}):\n", own.adjusted);
+        let what = match own.compared {
+            "polynomial" => "Trends over the levels, taken as equally spaced",
+            _ => "Differences",
+        };
+        text += &format!("\n\n{what} ({}):\n", own.adjusted);
         text += &text_of_rows(&own.differences, &DIFFERENCES, &[0]);
         let ratios = own.differences.iter();
         let ratios = ratios.filter_map(|own| Some((compared(own), own.ratio?)));
