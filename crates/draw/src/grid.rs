@@ -114,7 +114,9 @@ pub fn drawing_of_grid(grid: &Grid) -> Drawing {
     let beside = grid.panels.iter().map(room_beside).fold(BESIDE, f64::max);
     let step = beside + width + RIGHT;
     let whole = step * columns as f64;
-    let legend = |own: &GridPanel| legend_height(&own.panel, (0.0, width), &LABELS);
+    let legend = |own: &GridPanel| {
+        legend_height(&with_short_labels(&own.panel, width), (0.0, width), &LABELS)
+    };
     let rows: Vec<f64> = grid
         .panels
         .chunks(columns)

@@ -12,12 +12,14 @@ pub fn unusable(option: impl Into<String>, problem: impl Into<String>) -> Error 
     }
 }
 
-/// Parts between marks, of which those in backticks are none.
+/// Parts between marks. A part that begins with a backtick may hold marks up to the next one.
 pub fn parts(text: &str, mark: char) -> impl Iterator<Item = &str> {
-    let mut quoted = false;
-    text.split(move |own| {
-        quoted ^= own == '`';
-        own == mark && !quoted
+    let (mut quoted, mut begins) = (false, true);
+    text.split(move |own: char| {
+        quoted ^= own == '`' && (quoted || begins);
+        let ends = own == mark && !quoted;
+        begins = ends || begins && own.is_whitespace();
+        ends
     })
 }
 
@@ -91,6 +93,8 @@ mod tests {
         let names = |text: &str| parts(text, ',').map(plain_name).collect::<Vec<_>>();
         assert_eq!(names("low, high"), ["low", "high"]);
         assert_eq!(names("`1,5 cm`,`` , 3`"), ["1,5 cm", "", "3`"]);
+        // Elsewhere a backtick is a character like others.
+        assert_eq!(names("5`,6`, `7`,8`"), ["5`", "6`", "7", "8`"]);
         assert_eq!(parts("a|`b|c`", '|').collect::<Vec<_>>(), ["a", "`b|c`"]);
     }
 }

@@ -323,6 +323,10 @@ mod tests {
             "1e-400",
             "00000000000000000000000000000001.5",
             "8.98846567431158e307",
+            // Exponents with zeros before them.
+            "1e00000000030",
+            "25e-0000000000001",
+            "0e99999999999",
         ] {
             let expected: f64 = text.parse().unwrap();
             let (value, used) = leading_number(text.as_bytes(), b'.').unwrap();

@@ -235,7 +235,7 @@ pub struct LackOfFit {
 /// A setting is undefined.
 ///
 /// # Numerics
-/// Settings are told apart by 128 bits of a hash: with a million of them, two are taken for
+/// Settings are told apart by two hashes of 64 bits: with a million of them, two are taken for
 /// equal with a probability of 1e-27.
 pub fn lack_of_fit<'a>(
     x: impl Into<ModelMatrix<'a>>,
@@ -273,7 +273,9 @@ pub fn lack_of_fit<'a>(
     }))
 }
 
-/// Hash of the settings of a row, of which there are two.
+/// A hash of the settings of a row.
+///
+/// * `which`: seed, 0 or 1, of one of two hashes
 fn key_of(x: &DMatrix<f64>, row: usize, columns: &[usize], which: u64) -> u64 {
     let mut hasher = FixedState::with_seed(which).build_hasher();
     for column in columns {
