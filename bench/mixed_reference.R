@@ -11,7 +11,7 @@ suppressMessages({
   library(pbkrtest)
   library(jsonlite)
 })
-folder <- "crates/statistics/tests/data"
+folder <- "crates/mixed/tests/data"
 
 # Park and Miller's generator, exact in double precision
 state <- 20131105
@@ -26,7 +26,7 @@ uniform <- function(n) {
 normal <- function(n) qnorm(uniform(n))
 
 write_table <- function(name, table) {
-  path <- file.path(folder, paste0("mixed_", name, ".csv"))
+  path <- file.path(folder, paste0(name, ".csv"))
   numbers <- sapply(table, is.double)
   table[numbers] <- lapply(table[numbers], function(x) sprintf("%.6f", x))
   write.csv(table, path, row.names = FALSE, quote = FALSE)
@@ -247,4 +247,4 @@ comparison <- {
 }
 versions <- sapply(c("lme4", "lmerTest", "pbkrtest"), function(p) as.character(packageVersion(p)))
 write(toJSON(list(versions = as.list(versions), cases = cases, comparison = comparison),
-  digits = NA, auto_unbox = TRUE), file.path(folder, "mixed_reference.json"))
+  digits = NA, auto_unbox = TRUE), file.path(folder, "reference.json"))

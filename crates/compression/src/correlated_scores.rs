@@ -1,8 +1,8 @@
 //! Covariances of estimates whose residuals are correlated along a curve.
 
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_numerics::cholesky;
-use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Probability that an interval holds the value.
 const CONFIDENCE: f64 = 0.95;

@@ -6,8 +6,8 @@ use crate::feature_problem::{FeatureProblem, Linearised, Nuisance, linearise, nu
 use crate::information::{Information, information};
 use nalgebra::{DMatrix, DVector};
 use windfall_contact::laws::kind::Law;
+use windfall_distribution::tail::{chi_squared_upper, chi_squared_upper_quantile};
 use windfall_identify::error::Error;
-use windfall_statistics::distribution::tail::{chi_squared_upper, chi_squared_upper_quantile};
 
 /// Limits of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 use crate::arrow_system::{Arrow, OWN, SHARED};
 use crate::waveform::{Estimate, RecordFit, WaveformFit, WeakDirection};
 use crate::waveform_parameters::{LEVEL, MASS, ONSET, Parameters, Point, VELOCITY};
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_identify::error::Error;
-use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Normal quantile of a two-sided 95 % interval.
 const NORMAL: f64 = 1.959_963_984_540_054;

@@ -5,7 +5,7 @@
 
 use crate::named::{Named, grouped};
 use serde::{Deserialize, Serialize};
-use windfall_statistics::distribution::quantile::median;
+use windfall_distribution::quantile::median;
 
 /// One estimated or held value.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]

@@ -19,12 +19,12 @@ mod pendulum;
 use pendulum::{Bench, arguments, bench, on_threads, recorded, rig};
 use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::LawKind;
+use windfall_distribution::tail::chi_squared_upper;
 use windfall_identify::fit::interval::{IntervalDetail, IntervalMethod, IntervalOptions};
 use windfall_identify::fit::problem::{FitOptions, Known, LawProblem, NoiseModel, Prior};
 use windfall_identify::fit::result::{Fit, fit_impact};
 use windfall_signal::impact::Impact;
 use windfall_signal::noise::gaussian::{noise_source, normal, uniform};
-use windfall_statistics::distribution::tail::chi_squared_upper;
 
 /// Median law: the rubber half-ball of the 2003 pendulum study.
 const MEDIAN: [f64; 2] = [394_931.0, 681.0];

@@ -4,30 +4,35 @@
 /// may import, innermost first: the arrows of the design.
 const ARROWS: &[(&str, &str)] = &[
     ("numerics", ""),
-    ("statistics", "numerics"),
+    ("distribution", "numerics"),
+    ("mixed", "distribution numerics"),
+    ("statistics", "mixed distribution numerics"),
     ("design", ""),
     ("contact", "numerics"),
-    ("signal", "statistics numerics"),
-    ("repeat", "signal statistics numerics"),
-    ("compression", "contact signal statistics numerics"),
-    ("identify", "contact signal statistics numerics"),
-    ("drop-rig", "statistics identify signal contact numerics"),
+    ("signal", "distribution numerics"),
+    ("repeat", "signal distribution numerics"),
+    ("compression", "contact signal distribution numerics"),
+    ("identify", "contact signal distribution numerics"),
+    ("drop-rig", "distribution identify signal contact numerics"),
     ("scene", "contact numerics"),
     ("source", ""),
     ("formats", "source"),
-    ("files", "statistics formats source numerics"),
+    ("files", "statistics distribution formats source numerics"),
     ("draw", "files"),
     ("cards", "files contact numerics"),
-    ("tables", "design draw files statistics"),
+    ("tables", "design draw files statistics mixed distribution"),
     (
         "campaign",
-        "cards draw files formats source identify contact signal statistics numerics",
+        "cards draw files formats source identify contact signal statistics distribution numerics",
     ),
     (
         "measure",
         "campaign draw files repeat compression contact signal numerics",
     ),
-    ("inspect", "campaign draw files formats numerics statistics"),
+    (
+        "inspect",
+        "campaign draw files formats numerics distribution",
+    ),
     (
         "simulate",
         "drop-rig campaign cards draw files identify contact signal",
@@ -38,20 +43,20 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "drop",
-        "design drop-rig measure campaign tables cards draw files identify contact signal statistics numerics",
+        "design drop-rig measure campaign tables cards draw files identify contact signal statistics mixed numerics",
     ),
     (
         "scene-run",
-        "campaign cards draw files scene identify contact statistics numerics",
+        "campaign cards draw files scene identify contact statistics distribution numerics",
     ),
     (
         "plan",
-        "tables cards draw files repeat signal statistics numerics",
+        "tables cards draw files repeat signal statistics mixed distribution numerics",
     ),
     ("engines", "scene-run files scene contact"),
     (
         "report",
-        "drop measure campaign cards draw files identify contact signal statistics",
+        "drop measure campaign cards draw files identify contact signal statistics distribution",
     ),
     (
         "workspace",
@@ -79,8 +84,7 @@ const TEST_DATA: &str = "test-data";
 
 /// Crates that compute: they print nothing, open no file, read no clock and
 /// know neither formats nor HTTP nor Python.
-const INNER: &str =
-    "numerics statistics contact signal repeat identify compression drop-rig design scene";
+const INNER: &str = "numerics distribution mixed statistics contact signal repeat identify compression drop-rig design scene";
 
 /// Crates that face people and programs: they parse, call a workflow, display.
 const FRONT_ENDS: &str = "web cli python";

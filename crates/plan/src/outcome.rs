@@ -1,8 +1,8 @@
 //! Plans as JSON shows them.
 
 use serde::Serialize;
+use windfall_distribution::tail::normal_upper_quantile;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::distribution::tail::normal_upper_quantile;
 
 /// A probability; simulated ones with their error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]

@@ -1,7 +1,7 @@
 //! Whether a quantity stays the same within a margin: two one-sided tests.
 
+use windfall_distribution::tail::{t_upper, t_upper_quantile};
 use windfall_signal::error::Error;
-use windfall_statistics::distribution::tail::{t_upper, t_upper_quantile};
 
 /// What the data say about a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use crate::interval::EnergyInterval;
 pub use crate::threshold_family::Family;
 use crate::threshold_family::interval_terms;
 use crate::turnbull::check_intervals;
+use windfall_distribution::tail::{chi_squared_upper_quantile, normal_quantile};
 use windfall_signal::error::Error;
-use windfall_statistics::distribution::tail::{chi_squared_upper_quantile, normal_quantile};
 
 /// Range of 1/σ that is searched, σ the spread of ln energy; 1.
 const STEEPNESS: (f64, f64) = (0.02, 200.0);

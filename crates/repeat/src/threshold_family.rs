@@ -1,6 +1,6 @@
 //! Location-scale families of the logarithm of the critical energy.
 
-use windfall_statistics::distribution::tail::normal_lower;
+use windfall_distribution::tail::normal_lower;
 
 /// Form of the distribution of critical energies between fruit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Values with their standard uncertainty.
 
-use windfall_statistics::distribution::tail::normal_lower;
+use windfall_distribution::tail::normal_lower;
 
 /// A value with its standard uncertainty.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

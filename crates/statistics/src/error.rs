@@ -1,8 +1,8 @@
 //! What can go wrong.
 
-use crate::mixed::error::MixedError;
 use crate::sample_error::SampleError;
 use thiserror::Error;
+use windfall_mixed::error::MixedError;
 
 /// Errors of designs and models.
 #[derive(Debug, Clone, PartialEq, Error)]

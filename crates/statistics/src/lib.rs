@@ -1,14 +1,11 @@
-//! Designs of experiments, linear models, response surfaces and mixed models.
+//! Tables, linear models, response surfaces and comparisons of groups.
 //!
 //! A [`table::Table`] holds what was measured, columns of numbers or of
 //! categories. This crate opens no file and knows no fruit.
 
 pub mod accurate_sum;
-pub mod coefficient;
 pub mod compare;
-pub mod distribution;
 pub mod error;
-pub mod mixed;
 pub mod model;
 mod orthonormal;
 pub mod residuals;
@@ -16,7 +13,6 @@ pub mod sample;
 pub mod sample_error;
 pub mod surface;
 pub mod table;
-pub mod weights;
 
 // What columns and rows of tables are made of.
 pub use windfall_numerics::{numbers, runs};

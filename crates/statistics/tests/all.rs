@@ -4,11 +4,6 @@
 
 mod compare_groups;
 mod drop_study;
-mod mixed_cases;
-mod mixed_closed_form;
-mod mixed_odd_input;
-mod mixed_recovers;
-mod mixed_reference;
 mod nist_anova;
 mod nist_linear;
 mod residuals;

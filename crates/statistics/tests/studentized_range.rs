@@ -2,10 +2,10 @@
 
 #![allow(clippy::excessive_precision, clippy::print_stdout)] // as the references printed them
 
-use windfall_statistics::compare::tukey::{games_howell, tukey_kramer};
-use windfall_statistics::distribution::studentized_range::{
+use windfall_distribution::studentized_range::{
     studentized_range_upper, studentized_range_upper_quantile,
 };
+use windfall_statistics::compare::tukey::{games_howell, tukey_kramer};
 
 const INF: f64 = f64::INFINITY;
 
@@ -30,7 +30,7 @@ fn reference_tail_by_panels() {
 /// Two means: the studentised range is √2 |t|.
 #[test]
 fn closed_form_two_means_are_a_t_test() {
-    use windfall_statistics::distribution::tail::t_two_sided;
+    use windfall_distribution::tail::t_two_sided;
     for df in [1.0, 2.0, 3.5, 7.0, 30.0, 400.0, 1e5] {
         for t in [0.01, 0.5, 1.0, 2.0, 5.0, 12.0] {
             let found = studentized_range_upper(t * 2f64.sqrt(), 2, df);

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use windfall_mixed::weights::Weights;
 use windfall_statistics::model::anova::lack_of_fit;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::formula;
@@ -17,7 +18,6 @@ use windfall_statistics::surface::coding::FactorCoding;
 use windfall_statistics::surface::desirability::{Goal, Wanted, desirability, overall};
 use windfall_statistics::surface::terms::surface_terms;
 use windfall_statistics::table::{Cells, Column, Table};
-use windfall_statistics::weights::Weights;
 
 /// A quadratic in two factors, sampled on a grid of five levels each with nothing
 /// but rounding, so that the fit is the polynomial itself.

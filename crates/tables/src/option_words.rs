@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::convert::Infallible;
 use windfall_design::exchange::Criterion as Optimality;
 use windfall_files::option_value::chosen;
-use windfall_statistics::mixed::fit::MixedMethod;
+use windfall_mixed::fit::MixedMethod;
 use windfall_statistics::model::anova::AnovaType;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::selection::Direction;

@@ -4,12 +4,10 @@ use crate::result::outcome::{ImpactOutcome, JointOutcome};
 use itertools::Itertools;
 use smol_str::{SmolStr, format_smolstr};
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS as MOST;
+use windfall_distribution::tail::{chi_squared_upper, normal_upper_quantile, t_upper_quantile};
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
 use windfall_files::named::{Named, grouped};
 use windfall_numerics::cholesky;
-use windfall_statistics::distribution::tail::{
-    chi_squared_upper, normal_upper_quantile, t_upper_quantile,
-};
 
 /// Probability below which impacts on one specimen are said to differ.
 const UNLIKELY: f64 = 0.01;

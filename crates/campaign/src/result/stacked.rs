@@ -2,11 +2,11 @@
 
 use crate::result::outcome::ImpactOutcome;
 use itertools::Itertools;
+use windfall_distribution::tail::{f_upper, t_two_sided};
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::grouped;
 use windfall_identify::fit::result::PHASES;
 use windfall_numerics::cholesky;
-use windfall_statistics::distribution::tail::{f_upper, t_two_sided};
 
 /// Probability of a chance below which what residuals have in common is told.
 const BY_CHANCE: f64 = 1e-4;

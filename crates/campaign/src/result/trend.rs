@@ -5,9 +5,9 @@ use crate::result::outcome::{ImpactOutcome, TrendOutcome};
 use crate::settings::model::{Campaign, ImpactEntry};
 use std::collections::{BTreeMap, BTreeSet};
 use windfall_contact::parameter::IMPACT_VELOCITY;
+use windfall_distribution::tail::t_two_sided;
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::grouped;
-use windfall_statistics::distribution::tail::t_two_sided;
 use windfall_statistics::residuals::trend::{Observation, trend};
 
 /// Column of impacts.csv with the time of day.

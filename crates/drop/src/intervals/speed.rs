@@ -3,10 +3,10 @@
 use crate::intervals::estimate::TimedImpact;
 use nalgebra::DMatrix;
 use serde::Serialize;
-use windfall_statistics::coefficient::Coefficient;
-use windfall_statistics::mixed::fit::{MixedOptions, fit_mixed};
-use windfall_statistics::mixed::inference::{coefficient_tests, variance_uncertainty};
-use windfall_statistics::mixed::term::random_intercept;
+use windfall_mixed::coefficient::Coefficient;
+use windfall_mixed::fit::{MixedOptions, fit_mixed};
+use windfall_mixed::inference::{coefficient_tests, variance_uncertainty};
+use windfall_mixed::term::random_intercept;
 use windfall_statistics::model::straight_line::fit_straight_line;
 
 /// Fewest impacts through which a line is laid.

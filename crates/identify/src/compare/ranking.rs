@@ -10,9 +10,9 @@ use crate::fit::problem::{FitOptions, LawProblem};
 use crate::fit::result::{Fit, fit_laws};
 use crate::rig::kind::Rig;
 use windfall_contact::laws::kind::LawKind;
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_signal::impact::Impact;
 use windfall_signal::noise::gaussian::{noise_source, uniform};
-use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Resampled campaigns behind the share of first places.
 const RESAMPLED: usize = 2000;

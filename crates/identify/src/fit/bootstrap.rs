@@ -11,9 +11,9 @@ use crate::fit::residual::Rows;
 use crate::fit::uncertainty::{inflation, standardised, whitened_derivatives, whitened_zero};
 use crate::noise::whitening::unit_shift;
 use crate::samples::{Quantity, SampleGroup};
+use windfall_distribution::tail::{normal_lower, normal_quantile};
 use windfall_numerics::least_squares::{Minimum, Options, Stop};
 use windfall_signal::noise::gaussian::{NoiseSource, noise_source, normal, uniform};
-use windfall_statistics::distribution::tail::{normal_lower, normal_quantile};
 
 /// A refit stops when less than this is left to gain, in units of χ²: a
 /// hundredth of a standard deviation.

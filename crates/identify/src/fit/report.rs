@@ -15,8 +15,8 @@ use crate::rig::kind::Rig;
 use crate::rig::simulate::simulate_rig;
 use crate::samples::Quantity;
 use windfall_contact::laws::kind::Law;
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_numerics::least_squares::Stop;
-use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Correlation above which two parameters of the law, and a parameter and a
 /// nuisance, are reported as inseparable. A stiffness always moves with the

@@ -9,9 +9,7 @@ use crate::population::profile::{Quantity, interval};
 use crate::population::state::{State, iteration_findings};
 use crate::population::variance::{Level, Structure};
 use nalgebra::{SMatrix, SVector};
-use windfall_statistics::distribution::tail::{
-    chi_squared_upper_quantile, t_two_sided, t_upper_quantile,
-};
+use windfall_distribution::tail::{chi_squared_upper_quantile, t_two_sided, t_upper_quantile};
 
 /// Fewer fruit than this are remarked on.
 const FEW_FRUIT: usize = 10;

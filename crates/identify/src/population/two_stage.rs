@@ -6,9 +6,7 @@ use crate::error::Error;
 use crate::population::design::design;
 use crate::population::model::{FixedEffect, PopulationData, Spread};
 use nalgebra::{DMatrix, DVector};
-use windfall_statistics::distribution::tail::{
-    chi_squared_upper_quantile, t_two_sided, t_upper_quantile,
-};
+use windfall_distribution::tail::{chi_squared_upper_quantile, t_two_sided, t_upper_quantile};
 
 /// Results of the two-stage estimate.
 #[derive(Clone, Debug, PartialEq)]

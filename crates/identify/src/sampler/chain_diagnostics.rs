@@ -2,8 +2,8 @@
 //!
 //! Chains are slices of equal length, one parameter at a time.
 
-use windfall_statistics::distribution::quantile::{median, quantile};
-use windfall_statistics::distribution::tail::normal_quantile;
+use windfall_distribution::quantile::{median, quantile};
+use windfall_distribution::tail::normal_quantile;
 
 /// Variance within chains, relative to that of all, below which they do not move; 1.
 const STILL: f64 = 1e-20;

@@ -7,11 +7,11 @@ use std::fmt::Write;
 use std::path::Path;
 use windfall_campaign::impacts::text::{counted_line, derived_cell, own_codes};
 use windfall_campaign::result::quantity::quantity_named;
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::{plain, value_and_sd};
 use windfall_files::text::quote::{command, path_word};
-use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// More files than this are counted, not named.
 const NAMED: usize = 5;

@@ -3,13 +3,13 @@
 use crate::options::SimulationOptions;
 use crate::question::{Count, Levels, Question, Size, Told};
 use crate::replicates::told_of;
+use windfall_distribution::tail::normal_lower;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::progress::{for_each, quiet};
 use windfall_repeat::interval::EnergyInterval;
 use windfall_repeat::threshold::{Family, fit_median};
 use windfall_signal::noise::gaussian::{noise_source, normal, uniform};
-use windfall_statistics::distribution::tail::normal_lower;
 
 /// A distribution of critical energies and the energies at which fruit are struck.
 pub(crate) struct CriticalQuestion {

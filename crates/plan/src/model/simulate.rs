@@ -4,14 +4,12 @@ use crate::power::Sides;
 use crate::question::Levels;
 use crate::study::{Resized, Study};
 use nalgebra::{DMatrix, DVector};
+use windfall_distribution::tail::{t_upper, t_upper_quantile};
+use windfall_mixed::finding::MixedFinding;
+use windfall_mixed::fit::{MixedOptions, fit_mixed};
+use windfall_mixed::inference::{estimate, f_test, picking_contrast, variance_uncertainty};
+use windfall_mixed::term::RandomTerm;
 use windfall_signal::noise::gaussian::{noise_source, normal};
-use windfall_statistics::distribution::tail::{t_upper, t_upper_quantile};
-use windfall_statistics::mixed::finding::MixedFinding;
-use windfall_statistics::mixed::fit::{MixedOptions, fit_mixed};
-use windfall_statistics::mixed::inference::{
-    estimate, f_test, picking_contrast, variance_uncertainty,
-};
-use windfall_statistics::mixed::term::RandomTerm;
 
 /// A study that is to be simulated.
 pub(crate) struct Layout {
@@ -100,7 +98,7 @@ impl Layout {
         (seed, stream): (u64, u64),
     ) -> Result<Found, String> {
         let y = self.draw(seed, stream);
-        let said = |error: windfall_statistics::mixed::error::MixedError| error.to_string();
+        let said = |error: windfall_mixed::error::MixedError| error.to_string();
         let options = MixedOptions::default();
         let fit = fit_mixed(&y, &self.x, &self.names, &self.random, &options).map_err(said)?;
         if let Some(why) = fit.findings.iter().find_map(lost) {

@@ -2,9 +2,9 @@
 
 use crate::outcome::PrecisionOutcome;
 use crate::question::{Levels, Question, Size, Told};
+use windfall_distribution::tail::f_upper;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::distribution::tail::f_upper;
 
 /// A parameter of a population.
 pub(crate) struct PopulationQuestion {

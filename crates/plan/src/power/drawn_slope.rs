@@ -9,8 +9,8 @@
 
 use crate::power::t_test::t_power;
 use crate::power::{Test, interval_quantile};
+use windfall_distribution::tail::f_upper_quantile;
 use windfall_numerics::root::bracketed_root;
-use windfall_statistics::distribution::tail::f_upper_quantile;
 
 /// Logarithm of a part of the largest density that adds nothing.
 const NOTHING: f64 = -40.0;

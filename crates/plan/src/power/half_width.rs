@@ -3,7 +3,7 @@
 
 use crate::power::interval_quantile;
 use libm::lgamma;
-use windfall_statistics::distribution::tail::chi_squared_upper_quantile;
+use windfall_distribution::tail::chi_squared_upper_quantile;
 
 /// Expected value of √(χ²/df): what a standard deviation with df degrees of freedom is on
 /// average, in parts of the true one.

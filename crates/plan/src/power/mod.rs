@@ -5,7 +5,7 @@ pub mod half_width;
 pub mod t_test;
 pub mod welch;
 
-use windfall_statistics::distribution::tail::t_upper_quantile;
+use windfall_distribution::tail::t_upper_quantile;
 
 /// A test at a level.
 #[derive(Clone, Copy, Debug, PartialEq)]

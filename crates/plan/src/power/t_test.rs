@@ -1,11 +1,9 @@
 //! Power of t tests and of F tests of several means.
 
 use crate::power::{Sides, Test};
+use windfall_distribution::noncentral::{at_most_one, noncentral_f_upper, noncentral_t_upper};
+use windfall_distribution::tail::{f_upper_quantile, t_upper_quantile};
 use windfall_numerics::root::bracketed_root;
-use windfall_statistics::distribution::noncentral::{
-    at_most_one, noncentral_f_upper, noncentral_t_upper,
-};
-use windfall_statistics::distribution::tail::{f_upper_quantile, t_upper_quantile};
 
 /// Largest effect in standard errors for which one is looked.
 const LARGEST_EFFECT: f64 = 1e6;

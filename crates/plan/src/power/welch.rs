@@ -3,10 +3,10 @@
 use crate::power::half_width::mean_deviation;
 use crate::power::{Sides, Test, interval_quantile};
 use std::f64::consts::TAU;
+use windfall_distribution::log_gamma_rest::stirling_rest;
+use windfall_distribution::noncentral::{at_most_one, noncentral_t_upper};
+use windfall_distribution::tail::{chi_squared_upper, t_upper_quantile};
 use windfall_numerics::root::bracketed_root;
-use windfall_statistics::distribution::log_gamma_rest::stirling_rest;
-use windfall_statistics::distribution::noncentral::{at_most_one, noncentral_t_upper};
-use windfall_statistics::distribution::tail::{chi_squared_upper, t_upper_quantile};
 
 /// Two groups whose means are to be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,11 +5,11 @@ use crate::outcome::PrecisionOutcome;
 use crate::question::{Count, Levels, Question, Size, Told};
 use crate::scatter::KnownScatter;
 use nalgebra::{DMatrix, DVector};
+use windfall_distribution::quantile::quantile;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_signal::noise::gaussian::{noise_source, normal};
-use windfall_statistics::distribution::quantile::quantile;
 use windfall_statistics::surface::analysis::Surface;
 use windfall_statistics::surface::canonical::{Shape, canonical};
 

@@ -4,10 +4,10 @@
 use std::f64::consts::TAU;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::result::quantity::{Quantity, quantities_named};
+use windfall_distribution::tail::{chi_squared_upper_quantile, f_upper_quantile};
 use windfall_draw::files::NamedFigure;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::named::grouped;
-use windfall_statistics::distribution::tail::{chi_squared_upper_quantile, f_upper_quantile};
 
 /// Probability that an ellipse leaves outside.
 const OUTSIDE: f64 = 0.05;

@@ -128,7 +128,7 @@ mod tests {
     /// (variance 1 + h²), and its area is 1.
     #[test]
     fn closed_form_density_of_normal_scores() {
-        use windfall_statistics::distribution::tail::normal_quantile;
+        use windfall_distribution::tail::normal_quantile;
         let draws: Vec<f64> = (0..500)
             .map(|i| normal_quantile((f64::from(i) + 0.5) / 500.0))
             .collect();

@@ -1,10 +1,10 @@
 //! Residuals of all impacts, laid upon each other over the contact.
 
 use windfall_campaign::result::outcome::ImpactOutcome;
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_identify::fit::result::PHASES;
-use windfall_statistics::distribution::tail::t_upper_quantile;
 
 /// Fewest impacts whose mean says something.
 const FEWEST: usize = 5;

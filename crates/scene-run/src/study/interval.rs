@@ -1,6 +1,6 @@
 //! Shares of bruised fruit over replicates, and their differences, with intervals.
 
-use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
+use windfall_distribution::tail::{normal_quantile, t_upper_quantile};
 
 /// Level of the intervals; 1.
 const LEVEL: f64 = 0.95;

@@ -2,10 +2,10 @@
 
 use crate::accurate_sum::{mean, variance};
 use crate::compare::one_way_anova::{FTest, one_way_anova};
-use crate::distribution::quantile::median;
-use crate::distribution::tail::chi_squared_upper;
 use crate::sample::check_groups;
 use crate::sample_error::SampleError;
+use windfall_distribution::quantile::median;
+use windfall_distribution::tail::chi_squared_upper;
 
 /// A χ² statistic and its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]

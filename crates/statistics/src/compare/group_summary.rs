@@ -1,12 +1,12 @@
 //! Groups of a table's rows, and what each group's values look like.
 
 use crate::accurate_sum::{mean, squares_about};
-use crate::distribution::quantile::quantiles;
-use crate::distribution::tail::t_upper_quantile;
 use crate::error::Error;
 use crate::sample::check_probability;
 use crate::table::{Categories, Table};
 use std::borrow::Cow;
+use windfall_distribution::quantile::quantiles;
+use windfall_distribution::tail::t_upper_quantile;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// The values of one group of rows.
@@ -56,7 +56,7 @@ pub struct GroupSummary {
     pub high: f64,
     /// Smallest value.
     pub min: f64,
-    /// First quartile, as [`quantile`](crate::distribution::quantile::quantile).
+    /// First quartile, as [`quantile`](windfall_distribution::quantile::quantile).
     pub q1: f64,
     /// Median.
     pub median: f64,

@@ -1,9 +1,9 @@
 //! Means of one or two samples: paired, with a common variance, and Welch's.
 
 use crate::accurate_sum::{mean, variance};
-use crate::distribution::tail::{t_two_sided, t_upper_quantile};
 use crate::sample::{check_pairs, check_probability, check_sample};
 use crate::sample_error::SampleError;
+use windfall_distribution::tail::{t_two_sided, t_upper_quantile};
 
 /// A difference of means with its t test.
 #[derive(Clone, Copy, Debug, PartialEq)]

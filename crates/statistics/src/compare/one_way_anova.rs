@@ -1,9 +1,9 @@
 //! One-way analysis of variance: the classic one, and Welch's for unequal variances.
 
 use crate::accurate_sum::{mean, squares_about, sum, variance};
-use crate::distribution::tail::f_upper;
 use crate::sample::check_groups;
 use crate::sample_error::SampleError;
+use windfall_distribution::tail::f_upper;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// One-way analysis of variance.

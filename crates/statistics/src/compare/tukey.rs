@@ -2,12 +2,12 @@
 
 use crate::accurate_sum::{mean, variance};
 use crate::compare::one_way_anova::one_way_anova;
-use crate::distribution::studentized_range::{
-    studentized_range_upper, studentized_range_upper_quantile,
-};
 use crate::sample::{check_groups, check_probability};
 use crate::sample_error::SampleError;
 use std::f64::consts::SQRT_2;
+use windfall_distribution::studentized_range::{
+    studentized_range_upper, studentized_range_upper_quantile,
+};
 
 /// Two groups of several.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,16 +1,16 @@
 //! Analysis of variance of linear models.
 
-use crate::distribution::tail::f_upper;
 use crate::error::Error;
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::Reduced;
-use crate::weights::Weights;
 use foldhash::quality::FixedState;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::hash::{BuildHasher, Hasher};
+use windfall_distribution::tail::f_upper;
+use windfall_mixed::weights::Weights;
 
 /// Which models a term is tested between.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

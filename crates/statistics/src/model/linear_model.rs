@@ -1,16 +1,16 @@
 //! Linear models: estimates with their errors, and how good they are.
 
-use crate::coefficient::{Coefficient, Estimated};
-use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::error::Error;
 use crate::model::anova::{AnovaRow, SumOfSquares};
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
 use crate::model::reduced::{Aliased, Reduced, Solved, reduce};
-use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
+use windfall_distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
+use windfall_mixed::coefficient::{Coefficient, Estimated};
+use windfall_mixed::weights::Weights;
 use windfall_numerics::as_written::as_written;
 use windfall_numerics::double_double::DoubleDouble;
 

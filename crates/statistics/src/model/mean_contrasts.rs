@@ -1,15 +1,15 @@
 //! Contrasts of means: which are compared, and how p allows for their number.
 
-use crate::coefficient::Estimated;
 use crate::compare::multiple_comparison::holm;
-use crate::distribution::largest_t::LargestT;
-use crate::distribution::studentized_range::{
-    studentized_range_upper, studentized_range_upper_quantile,
-};
-use crate::distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 use crate::model::contrast::PolynomialBasis;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::SQRT_2;
+use windfall_distribution::largest_t::LargestT;
+use windfall_distribution::studentized_range::{
+    studentized_range_upper, studentized_range_upper_quantile,
+};
+use windfall_distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
+use windfall_mixed::coefficient::Estimated;
 
 /// Which means are compared.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,11 +6,11 @@ use crate::model::model_frame::{ModelFrame, matrix};
 use crate::numbers::Numbers;
 use crate::runs::Runs;
 use crate::table::{Categories, Cells, Column, Table};
-use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
+use windfall_mixed::weights::Weights;
 
 /// Rows of a block.
 pub(crate) const BLOCK: usize = 4096;

@@ -11,9 +11,9 @@ use crate::model::model_matrix::ModelMatrix;
 use crate::model::reduced::{Reduced, is_ordinary, reduce_evaluated, reduce_written};
 use crate::runs::Runs;
 use crate::table::Table;
-use crate::weights::Weights;
 use nalgebra::DMatrix;
 use std::borrow::Cow;
+use windfall_mixed::weights::Weights;
 
 /// Rows of a model: what is explained, and by what.
 #[derive(Clone, Debug, PartialEq)]

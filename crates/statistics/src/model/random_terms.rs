@@ -1,13 +1,13 @@
 //! Random parts of a formula → columns and groups.
 
 use crate::error::Error;
-use crate::mixed::predict::NewTerm;
-use crate::mixed::term::RandomTerm;
 use crate::model::contrast::Contrast;
 use crate::model::formula::{Formula, RandomPart};
 use crate::model::model_frame::{ModelFrame, prediction_rows};
 use crate::model::model_rows::model_rows;
 use crate::table::{Cells, Table};
+use windfall_mixed::predict::NewTerm;
+use windfall_mixed::term::RandomTerm;
 
 /// A random term and how its columns came about.
 #[derive(Clone, Debug, PartialEq)]

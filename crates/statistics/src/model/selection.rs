@@ -3,12 +3,12 @@
 //! The p-values of what remains are optimistic (Harrell, Regression Modeling Strategies,
 //! 2nd ed., §4.3); cross-validation with the selection inside shows what it costs.
 
-use crate::distribution::tail::f_upper;
 use crate::model::linear_model::{log_likelihood, small_sample};
 use crate::model::model_frame::ModelFrame;
 use crate::model::reduced::Reduced;
 use crate::model::term_order::{divides, powers_of_terms};
-use crate::weights::Weights;
+use windfall_distribution::tail::f_upper;
+use windfall_mixed::weights::Weights;
 
 /// Where selection begins, and where it may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,15 +1,15 @@
 //! Linear models in which each level of a category has a residual variance of its own.
 
-use crate::coefficient::{Coefficient, Estimated};
-use crate::distribution::tail::{chi_squared_upper, chi_squared_upper_quantile};
 use crate::error::Error;
-use crate::mixed::error::MixedError;
-use crate::mixed::fit::MixedMethod;
-use crate::mixed::inference::{FTest, VarianceUncertainty, contrast_df, f_test_of};
 use crate::model::linear_model::{LinearFit, coefficient, student_quantile};
-use crate::weights::Weights;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
+use windfall_distribution::tail::{chi_squared_upper, chi_squared_upper_quantile};
+use windfall_mixed::coefficient::{Coefficient, Estimated};
+use windfall_mixed::error::MixedError;
+use windfall_mixed::fit::MixedMethod;
+use windfall_mixed::inference::{FTest, VarianceUncertainty, contrast_df, f_test_of};
+use windfall_mixed::weights::Weights;
 
 /// Steps of the search, and halvings of each.
 const MOST_STEPS: usize = 200;

@@ -1,11 +1,11 @@
 //! The power of the response that makes residuals normal and of equal variance.
 
-use crate::distribution::tail::chi_squared_upper_quantile;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::{check_probability, check_sample};
 use crate::sample_error::SampleError;
-use crate::weights::Weights;
 use nalgebra::DMatrix;
+use windfall_distribution::tail::chi_squared_upper_quantile;
+use windfall_mixed::weights::Weights;
 
 /// Where to look for the power.
 #[derive(Clone, Copy, Debug, PartialEq)]

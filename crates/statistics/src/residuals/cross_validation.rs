@@ -5,10 +5,10 @@ use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::ModelMatrix;
 use crate::model::reduced::{Reduced, Solved, is_ordinary, join, joined, reduce, triangle_of_rows};
 use crate::model::selection::{SelectionOptions, select};
-use crate::weights::Weights;
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
+use windfall_mixed::weights::Weights;
 
 /// The quality of predictions of left-out rows.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]

@@ -1,14 +1,14 @@
 //! Rows and columns that a linear model hangs on.
 
-use crate::coefficient::Coefficient;
 use crate::error::Error;
 use crate::model::linear_model::{LinearFit, coefficient, student_quantile};
 use crate::model::model_frame::ModelFrame;
 use crate::model::model_matrix::{BLOCK, ModelMatrix};
-use crate::weights::Weights;
 use nalgebra::DMatrix;
 use serde::Serialize;
 use std::borrow::Cow;
+use windfall_mixed::coefficient::Coefficient;
+use windfall_mixed::weights::Weights;
 
 /// What a row does to a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]

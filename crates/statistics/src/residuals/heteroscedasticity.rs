@@ -1,11 +1,11 @@
 //! Whether the variance of residuals changes along the regressors.
 
 use crate::compare::equal_variance::ChiSquaredTest;
-use crate::distribution::tail::chi_squared_upper;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::check_sample;
 use crate::sample_error::SampleError;
 use nalgebra::DMatrix;
+use windfall_distribution::tail::chi_squared_upper;
 
 /// Koenker's form n R² of the Breusch-Pagan test, which holds its level for residuals
 /// that are not normal.

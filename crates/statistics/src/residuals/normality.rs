@@ -1,9 +1,9 @@
 //! Whether values, or residuals, look normal.
 
 use crate::accurate_sum::{mean, squares_about, standard_deviation};
-use crate::distribution::tail::{normal_lower, normal_quantile, normal_upper};
 use crate::sample::check_sample;
 use crate::sample_error::SampleError;
+use windfall_distribution::tail::{normal_lower, normal_quantile, normal_upper};
 
 /// A test of normality.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! Whether successive residuals are correlated.
 
-use crate::distribution::tail::beta_lower;
 use crate::orthonormal::{dot, orthonormal_basis, take_out};
 use crate::sample::check_sample;
 use crate::sample_error::SampleError;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
+use windfall_distribution::tail::beta_lower;
 
 /// The Durbin-Watson statistic.
 #[derive(Clone, Copy, Debug, PartialEq)]

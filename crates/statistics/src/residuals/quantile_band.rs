@@ -1,7 +1,7 @@
 //! How far ordered values may lie from their quantiles.
 
-use crate::distribution::tail::beta_lower;
 use rayon::prelude::*;
+use windfall_distribution::tail::beta_lower;
 use windfall_numerics::root::bracketed_root;
 
 /// Numbers of values up to which the level of a band is calculated.

@@ -196,7 +196,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::tail::{normal_quantile, t_two_sided};
+    use windfall_distribution::tail::{normal_quantile, t_two_sided};
 
     /// Twelve values on four fruit. The deviations are so large that all weights are equal.
     fn observations(own_blocks: bool) -> Vec<Observation> {

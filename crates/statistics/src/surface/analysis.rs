@@ -1,7 +1,6 @@
 //! Response surfaces: polynomials of coded factors.
 
 use crate::error::Error;
-use crate::mixed::term::RandomTerm;
 use crate::model::anova::{LackOfFit, lack_of_fit};
 use crate::model::contrast::Contrast;
 use crate::model::linear_model::{LinearFit, fit_reduced};
@@ -12,8 +11,9 @@ use crate::surface::coding::FactorCoding;
 use crate::surface::random_groups::RandomGroups;
 use crate::surface::terms::{Monomial, SurfaceTerms, monomial_name, monomial_value};
 use crate::table::Categories;
-use crate::weights::Weights;
 use nalgebra::DMatrix;
+use windfall_mixed::term::RandomTerm;
+use windfall_mixed::weights::Weights;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// A fitted surface.

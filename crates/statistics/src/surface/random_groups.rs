@@ -1,18 +1,20 @@
 //! Response surfaces of runs in random groups: days, operators, whole plots.
 
-use crate::coefficient::{Coefficient, Estimated};
 use crate::error::Error;
-use crate::mixed::fit::{MixedFit, MixedOptions, fit_mixed};
-use crate::mixed::inference::{FTest, VarianceUncertainty, picking_contrast, variance_uncertainty};
-use crate::mixed::kenward_roger::{
-    KenwardRoger, kenward_roger, kenward_roger_estimate, kenward_roger_f, kenward_roger_tests,
-};
-use crate::mixed::predict::{NewRows, NewTerm, predict_mixed};
-use crate::mixed::summary::variance_shares;
-use crate::mixed::term::RandomTerm;
 use crate::model::linear_model::{LinearFit, Quality, student_quantile};
 use crate::model::prediction::Prediction;
 use nalgebra::DMatrix;
+use windfall_mixed::coefficient::{Coefficient, Estimated};
+use windfall_mixed::fit::{MixedFit, MixedOptions, fit_mixed};
+use windfall_mixed::inference::{
+    FTest, VarianceUncertainty, picking_contrast, variance_uncertainty,
+};
+use windfall_mixed::kenward_roger::{
+    KenwardRoger, kenward_roger, kenward_roger_estimate, kenward_roger_f, kenward_roger_tests,
+};
+use windfall_mixed::predict::{NewRows, NewTerm, predict_mixed};
+use windfall_mixed::summary::variance_shares;
+use windfall_mixed::term::RandomTerm;
 
 /// Coefficients of a surface by restricted maximum likelihood, with the errors of Kenward and
 /// Roger.

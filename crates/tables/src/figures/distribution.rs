@@ -1,9 +1,9 @@
 //! How the values of a column are distributed: a histogram.
 
+use windfall_distribution::quantile::quantile;
 use windfall_draw::grid::{GridPanel, Scale};
 use windfall_draw::xy::{Panel, Series, Style};
 use windfall_files::text::column_title::column_title;
-use windfall_statistics::distribution::quantile::quantile;
 
 /// Most bins.
 const MOST_BINS: usize = 60;

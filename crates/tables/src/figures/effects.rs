@@ -10,7 +10,7 @@ use windfall_draw::xy::{Panel, Series, Style};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::column_title::column_title;
-use windfall_statistics::coefficient::Estimated;
+use windfall_mixed::coefficient::Estimated;
 use windfall_statistics::model::mean_contrasts::interval;
 use windfall_statistics::model::model_frame::ModelFrame;
 use windfall_statistics::model::reduced::Aliased;

@@ -1,9 +1,9 @@
 //! Ordered values against the quantiles of a distribution, with a band that holds all of them.
 
 use crate::figures::words::percent;
+use windfall_distribution::tail::{normal_quantile, t_upper_quantile};
 use windfall_draw::grid::{GridPanel, Scale};
 use windfall_draw::xy::{Mark, Panel, Series, Side, Style};
-use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
 use windfall_statistics::residuals::quantile_band::{local_level, probability_band};
 
 /// An ordered value with what it is held against.

@@ -1,7 +1,7 @@
 //! What a model is made of, and rows of its columns at chosen settings.
 
+use windfall_distribution::quantile::quantile;
 use windfall_files::error::Error;
-use windfall_statistics::distribution::quantile::quantile;
 use windfall_statistics::model::encoding::Encoding;
 use windfall_statistics::model::expression::columns_of;
 use windfall_statistics::model::model_frame::{ModelFrame, prediction_rows};

@@ -143,7 +143,7 @@ fn between(fitted: &[(f64, f64)], x: &[f64]) -> Vec<f64> {
 /// Weights from the residuals (bisquare of six median residuals); whether another round is due.
 fn reweigh(robust: &mut [f64], y: &[f64], line: &[f64]) -> bool {
     let residuals: Vec<f64> = y.iter().zip(line).map(|(y, own)| (y - own).abs()).collect();
-    let limit = 6.0 * windfall_statistics::distribution::quantile::median(&residuals);
+    let limit = 6.0 * windfall_distribution::quantile::median(&residuals);
     let mean = residuals.iter().sum::<f64>() / residuals.len() as f64;
     if limit < 1e-7 * mean {
         return false;

@@ -9,7 +9,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
-use windfall_statistics::coefficient::Estimated;
+use windfall_mixed::coefficient::Estimated;
 use windfall_statistics::model::formula::Formula;
 use windfall_statistics::model::linear_model::LinearFit;
 use windfall_statistics::model::mean_contrasts::{JointTest, joint_test};

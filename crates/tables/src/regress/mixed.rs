@@ -18,21 +18,22 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
-use windfall_statistics::coefficient::Estimated;
-use windfall_statistics::error::Error as StatisticsError;
-use windfall_statistics::mixed::constraint::VarianceParameter;
-use windfall_statistics::mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_weighted};
-use windfall_statistics::mixed::inference::{
+use windfall_mixed::coefficient::Estimated;
+use windfall_mixed::constraint::VarianceParameter;
+use windfall_mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_weighted};
+use windfall_mixed::inference::{
     FTest, VarianceUncertainty, coefficient_tests, estimate, f_test, picking_contrast,
     variance_uncertainty,
 };
-use windfall_statistics::mixed::kenward_roger::{
+use windfall_mixed::kenward_roger::{
     KenwardRoger, kenward_roger, kenward_roger_estimate, kenward_roger_f, kenward_roger_tests,
 };
-use windfall_statistics::mixed::predict::{NewRows, predict_mixed};
-use windfall_statistics::mixed::profile::{Profiles, profile_variances};
-use windfall_statistics::mixed::summary::variance_shares;
-use windfall_statistics::mixed::term::RandomTerm;
+use windfall_mixed::predict::{NewRows, predict_mixed};
+use windfall_mixed::profile::{Profiles, profile_variances};
+use windfall_mixed::summary::variance_shares;
+use windfall_mixed::term::RandomTerm;
+use windfall_mixed::weights::Weights;
+use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::anova::AnovaRow;
 use windfall_statistics::model::contrast::Contrast;
 use windfall_statistics::model::formula::Formula;
@@ -46,7 +47,6 @@ use windfall_statistics::model::original_scale::OriginalScale;
 use windfall_statistics::model::random_terms::{FramedTerm, new_terms, random_terms};
 use windfall_statistics::model::reduced::{Aliased, reduce};
 use windfall_statistics::runs::Runs;
-use windfall_statistics::weights::Weights;
 
 struct Fitted {
     rows: ModelRows,
@@ -269,7 +269,7 @@ fn draw(
     write_paintings(folder, &paintings).map(|_| ())
 }
 
-fn mixed(error: windfall_statistics::mixed::error::MixedError) -> Error {
+fn mixed(error: windfall_mixed::error::MixedError) -> Error {
     Error::Statistics(StatisticsError::Mixed(error))
 }
 

@@ -4,17 +4,17 @@ use crate::figures::diagnostics::{Arrangement, Diagnostics, diagnostics_painting
 use crate::figures::quantiles::{Held, QuantileWords, ordered_values, quantile_panel};
 use crate::figures::thinning::{drawn_rows, largest};
 use crate::figures::words::{cell, percent};
+use windfall_distribution::tail::normal_upper_quantile;
 use windfall_draw::files::Painting;
 use windfall_draw::grid::{Grid, GridPanel, Scale, drawing_of_grid};
 use windfall_draw::xy::{Mark, Panel, Series, Side, Style};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::column_title::column_title;
-use windfall_statistics::distribution::tail::normal_upper_quantile;
-use windfall_statistics::mixed::constraint::VarianceParameter;
-use windfall_statistics::mixed::fit::MixedFit;
-use windfall_statistics::mixed::profile::{ProfileInterval, Profiles, profile_roots};
-use windfall_statistics::mixed::term::RandomTerm;
+use windfall_mixed::constraint::VarianceParameter;
+use windfall_mixed::fit::MixedFit;
+use windfall_mixed::profile::{ProfileInterval, Profiles, profile_roots};
+use windfall_mixed::term::RandomTerm;
 use windfall_statistics::residuals::diagnostics::RowInfluence;
 
 /// Sizes of a panel, and of that of a profile, whose name is long; px.

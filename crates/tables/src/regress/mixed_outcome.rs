@@ -5,8 +5,8 @@ use crate::regress::outcome::{OriginalPrediction, RangeOutcome};
 use crate::rows::RowCount;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
-use windfall_statistics::coefficient::Coefficient;
-use windfall_statistics::mixed::predict::MixedPrediction;
+use windfall_mixed::coefficient::Coefficient;
+use windfall_mixed::predict::MixedPrediction;
 use windfall_statistics::model::anova::AnovaRow;
 
 /// A standard deviation between groups, or the correlation of two effects.

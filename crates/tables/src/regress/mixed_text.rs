@@ -10,7 +10,7 @@ use windfall_files::text::columns::{Column, csv_of_rows, text_of_rows};
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::findings_list;
-use windfall_statistics::coefficient::Coefficient;
+use windfall_mixed::coefficient::Coefficient;
 
 const TERMS: [Column<Coefficient>; 8] = [
     ("term", |term| term.name.clone()),

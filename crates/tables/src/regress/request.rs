@@ -9,7 +9,7 @@ use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
 use windfall_files::table::data::Data;
 
-pub use windfall_statistics::mixed::fit::MixedMethod;
+pub use windfall_mixed::fit::MixedMethod;
 pub use windfall_statistics::model::anova::AnovaType;
 pub use windfall_statistics::model::contrast::Contrast;
 pub use windfall_statistics::model::selection::{Criterion, Direction, SelectionOptions};

@@ -22,7 +22,7 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, Wanted, open_data};
 use windfall_files::write_file::check_outputs;
-use windfall_statistics::coefficient::Coefficient;
+use windfall_mixed::coefficient::Coefficient;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares, anova, lack_of_fit};
 use windfall_statistics::model::formula::{Formula, formula};

@@ -10,7 +10,7 @@ use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, given, text_of_rows};
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::{findings_list, page_tables, paragraph};
-use windfall_statistics::coefficient::Coefficient;
+use windfall_mixed::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, LackOfFit, SumOfSquares};
 use windfall_statistics::model::linear_model::Quality;
 

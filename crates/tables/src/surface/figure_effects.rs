@@ -1,6 +1,7 @@
 //! Which terms of a response surface matter: Pareto and half-normal plot of their t.
 
 use crate::surface::outcome::SurfaceModel;
+use windfall_distribution::tail::{normal_quantile, t_upper_quantile};
 use windfall_draw::axis::axis;
 use windfall_draw::files::{Painting, file_name};
 use windfall_draw::frame::{Frame, Rectangle};
@@ -8,7 +9,6 @@ use windfall_draw::svg::{Anchor, Drawing, Ink};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::column_title::column_title;
-use windfall_statistics::distribution::tail::{normal_quantile, t_upper_quantile};
 
 /// Size of the panels and the room around them; px.
 const WIDTH: f64 = 300.0;

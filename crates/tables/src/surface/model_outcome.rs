@@ -10,7 +10,7 @@ use crate::surface::random::random_outcome;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::Data;
-use windfall_statistics::coefficient::Coefficient;
+use windfall_mixed::coefficient::Coefficient;
 use windfall_statistics::model::anova::{AnovaRow, AnovaType, SumOfSquares, anova_within};
 use windfall_statistics::residuals::diagnostics::{Inflation, Influence, inflation, influence};
 use windfall_statistics::surface::analysis::{Surface, surface_lack_of_fit};

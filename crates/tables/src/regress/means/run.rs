@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
-use windfall_statistics::coefficient::Estimated;
+use windfall_mixed::coefficient::Estimated;
 use windfall_statistics::model::formula_syntax::Node;
 use windfall_statistics::model::marginal_means::{Asked, MarginalRows, marginal_rows, slope_rows};
 use windfall_statistics::model::mean_contrasts::{

@@ -7,9 +7,9 @@ use nalgebra::DMatrix;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
-use windfall_statistics::coefficient::Estimated;
+use windfall_mixed::coefficient::Estimated;
+use windfall_mixed::fit::MixedMethod;
 use windfall_statistics::error::Error as StatisticsError;
-use windfall_statistics::mixed::fit::MixedMethod;
 use windfall_statistics::model::anova::{AnovaRow, hypothesis};
 use windfall_statistics::model::linear_model::{
     LinearFit, Quality, WholeModel, small_sample, student_quantile,
