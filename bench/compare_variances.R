@@ -274,3 +274,69 @@ months <- transform(airquality, Month = paste0("m", Month))
 check_levels("levels: airquality", months, Ozone ~ Temp + Wind + Month, "Month")
 jobs <- transform(na.omit(carData::Prestige), type = as.character(type))
 check_levels("levels: Prestige", jobs, prestige ~ education + log(income) + type, "type", means = "type")
+
+# The same beside random effects: lme with varIdent.
+check_mixed_levels <- function(group, table, fixed, random, text, by, maximum = FALSE, means = NULL) {
+  path <- write_table(group, table)
+  table$.by <- table[[by]]
+  method <- if (maximum) "ML" else "REML"
+  control <- lmeControl(tolerance = 1e-10, msTol = 1e-13, opt = "nlminb", maxIter = 500, msMaxIter = 1000, msMaxEval = 5000)
+  fit_of <- function(...) do.call(lme, list(fixed, data = table, random = random, method = method, control = control, ...))
+  fit <- fit_of(weights = varIdent(form = ~ 1 | .by))
+  asked <- paste("--variance", by, "--likelihood", tolower(method))
+  found <- ask(path, "--formula", shQuote(text), asked)
+  limit <- 1e-5
+  own <- summary(fit)$tTable
+  compare(group, "estimate", found$terms$estimate, unname(own[, "Value"]), limit)
+  # lme's errors by ML are of the residual variance of REML.
+  if (!maximum) compare(group, "standard error", found$terms$se, unname(own[, "Std.Error"]), limit)
+  compare(group, "log-likelihood, AIC", c(found$log_likelihood, found$aic), c(as.numeric(logLik(fit)), AIC(fit)), 1e-8)
+  variances <- level_variances(fit, table, by)
+  residual <- found$variances[found$variances$group == "residual", ]
+  order <- match(residual$of, names(variances))
+  stopifnot(!anyNA(order))
+  compare(group, "residual standard deviations", residual$value, unname(sqrt(variances[order])), limit)
+  between <- found$variances[found$variances$group != "residual" & found$variances$kind == "sd", ]
+  theirs <- unlist(lapply(fit$modelStruct$reStruct, function(own) sqrt(diag(as.matrix(own)))))
+  compare(group, "standard deviations between groups", sort(between$value), sort(unname(theirs * fit$sigma)), 1e-4)
+  one <- fit_of()
+  compare(group, "likelihood ratio", found$level_variances$test$statistic, 2 * as.numeric(logLik(fit) - logLik(one)), 1e-6)
+  compare(group, "p of it", found$level_variances$test$p, anova(fit, one)[["p-value"]][2], 1e-6)
+  effects <- unlist(lapply(ranef(fit, level = seq_along(fit$modelStruct$reStruct), simplify = FALSE), unlist))
+  if (length(fit$modelStruct$reStruct) == 1) effects <- unlist(ranef(fit))
+  compare(group, "effects of groups", sort(found$effects$value), sort(unname(effects)), 1e-4)
+  if (!is.null(means)) {
+    answer <- ask(path, "--formula", shQuote(text), asked, "--means", means)$means
+    grid <- emmeans(fit, means, data = table)
+    theirs <- as.data.frame(grid)
+    order <- match(unlist(answer$means[[1]]$levels), as.character(theirs[[means]]))
+    compare(group, "means", c(answer$means[[1]]$mean, answer$means[[1]]$se), c(theirs$emmean[order], theirs$SE[order]), limit)
+    pairs <- as.data.frame(contrast(grid, "revpairwise"))
+    compare(group, "differences", sort(abs(answer$differences[[1]]$t)), sort(abs(pairs$t.ratio)), limit)
+  }
+}
+plain <- function(table) {
+  table <- as.data.frame(table)
+  categories <- vapply(table, is.factor, TRUE)
+  table[categories] <- lapply(table[categories], as.character)
+  table
+}
+children <- plain(nlme::Orthodont)
+check_mixed_levels("mixed levels: Orthodont", children, distance ~ age * Sex, list(Subject = ~ 1), "distance ~ age * Sex + (1 | Subject)", "Sex", means = "Sex")
+check_mixed_levels("mixed levels: Orthodont, slopes", children, distance ~ age * Sex, list(Subject = ~ age), "distance ~ age * Sex + (1 + age | Subject)", "Sex", means = "Sex")
+check_mixed_levels("mixed levels: Orthodont by ML", children, distance ~ age + Sex, list(Subject = ~ 1), "distance ~ age + Sex + (1 | Subject)", "Sex", TRUE)
+whole <- plain(nlme::Machines)
+whole$Worker <- paste0("w", whole$Worker)
+check_mixed_levels("mixed levels: Machines", whole, score ~ Machine, list(Worker = ~ 1), "score ~ Machine + (1 | Worker)", "Machine", means = "Machine")
+check_mixed_levels("mixed levels: Machines, unbalanced", whole[-c(2, 3, 6, 8, 9, 12, 19, 20, 27, 33), ], score ~ Machine, list(Worker = ~ 1), "score ~ Machine + (1 | Worker)", "Machine", means = "Machine")
+oats <- plain(nlme::Oats)
+check_mixed_levels("mixed levels: Oats", oats, yield ~ nitro + Variety, list(Block = ~ 1, Variety = ~ 1), "yield ~ nitro + Variety + (1 | Block / Variety)", "Variety", means = "Variety")
+rats <- plain(nlme::BodyWeight)
+rats$Diet <- paste0("d", rats$Diet)
+rats$Rat <- paste0("r", rats$Rat)
+check_mixed_levels("mixed levels: BodyWeight", rats, weight ~ Time * Diet, list(Rat = ~ Time), "weight ~ Time * Diet + (1 + Time | Rat)", "Diet")
+flow <- plain(nlme::Dialyzer)
+flow$QB <- paste0("q", flow$QB)
+check_mixed_levels("mixed levels: Dialyzer", flow, rate ~ pressure + I(pressure^2) + QB, list(Subject = ~ 1), "rate ~ pressure + pressure^2 + QB + (1 | Subject)", "QB", means = "QB")
+impact_levels <- transform(impacts, y = k + c(0, 2)[factor(variety)] * scale(seq_along(k) * 7919 %% 13)[, 1])
+check_mixed_levels("mixed levels: impacts", impact_levels, y ~ V * variety + R, list(specimen = ~ 1), "y ~ V * variety + R + (1 | specimen)", "variety", means = "variety")

@@ -127,7 +127,8 @@ pub(crate) fn leaf_of(factors: &[Factor], trunk: &Trunk, fixed: &[&[f64]]) -> Le
     leaf
 }
 
-fn rows_by_group(factor: &Factor) -> Vec<Vec<usize>> {
+/// Rows of each group.
+pub(crate) fn rows_by_group(factor: &Factor) -> Vec<Vec<usize>> {
     let mut counts = vec![0; factor.groups];
     factor.group.iter().for_each(|group| counts[*group] += 1);
     let mut rows: Vec<Vec<usize>> = counts.into_iter().map(Vec::with_capacity).collect();

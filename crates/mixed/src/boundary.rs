@@ -1,11 +1,11 @@
 //! The profiled criterion, its minimum, and whether that lies on the boundary.
 
 use crate::evaluate::{State, evaluate};
+use crate::levels::{level_slopes, within_bounds};
 use crate::minimise::{Minimum, Sloped, minimise};
 use crate::model::MixedModel;
 use crate::slope::slopes;
 use crate::theta::{Entry, blocks_of, entries_from, entries_of, semidefinite_root, start_of};
-use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
 /// Diagonal entries below this are tried at zero; parts of the residual deviation.
@@ -48,9 +48,15 @@ impl Criterion {
         state.log_v - self.log_weights + restricted + k * (1.0 + (TAU * state.squares / k).ln())
     }
 
-    /// Derivative by the entries of Λ's blocks.
-    pub(crate) fn slope(&self, model: &MixedModel, state: &State) -> Vec<DMatrix<f64>> {
-        let (slopes, _) = slopes(model, state);
+    /// Derivatives by the free entries of Λ's blocks, then by the logarithms of the residual
+    /// variances of levels; `None` where numbers overflow.
+    pub(crate) fn slope(
+        &self,
+        model: &MixedModel,
+        state: &State,
+        entries: &[Entry],
+    ) -> Option<Vec<f64>> {
+        let (slopes, projections) = slopes(model, state);
         let weight = self.denominator / state.squares;
         let mut sum = slopes.log_v;
         for (factor, sum) in sum.iter_mut().enumerate() {
@@ -59,7 +65,10 @@ impl Criterion {
                 *sum += &slopes.log_fixed[factor];
             }
         }
-        sum
+        let mut slope = entries_from(entries, &sum);
+        let levels = level_slopes(model, state, &projections)?;
+        slope.extend(levels.deviance(self.restricted, 1.0 / weight));
+        Some(slope)
     }
 }
 
@@ -70,6 +79,8 @@ pub(crate) struct Estimate {
     pub entries: Vec<Entry>,
     /// Their values.
     pub theta: Vec<f64>,
+    /// Logarithms of the residual variances of levels, over those the model was prepared with.
+    pub logs: Vec<f64>,
     /// Diagonal entries at zero, as places in `entries`.
     pub at_zero: Vec<usize>,
     /// The criterion.
@@ -98,7 +109,8 @@ pub(crate) fn estimate(model: &MixedModel, criterion: &Criterion) -> Option<(Est
             }
         }
     }
-    let state = evaluate(model, &blocks_of(model, &entries, &best.theta))?;
+    let model = model.at_levels(&best.logs);
+    let state = evaluate(&model, &blocks_of(&model, &entries, &best.theta))?;
     Some((best, state))
 }
 
@@ -108,11 +120,14 @@ fn from_start(
     entries: &[Entry],
     size: f64,
 ) -> Option<Minimum> {
-    let free: Vec<usize> = (0..entries.len()).collect();
-    search(model, criterion, entries, &free, start_of(entries, size))
+    let mut start = start_of(entries, size);
+    start.resize(entries.len() + model.free_levels(), 0.0);
+    let free: Vec<usize> = (0..start.len()).collect();
+    search(model, criterion, entries, &free, start)
 }
 
-/// Minimum over the `free` entries, others held.
+/// Minimum over the `free` coordinates, others held: entries, then logarithms of the residual
+/// variances of levels.
 fn search(
     model: &MixedModel,
     criterion: &Criterion,
@@ -120,23 +135,28 @@ fn search(
     free: &[usize],
     start: Vec<f64>,
 ) -> Option<Minimum> {
+    let whole = |point: &[f64]| {
+        let mut whole = start.clone();
+        let pairs = free.iter().zip(point);
+        pairs.for_each(|(place, value)| whole[*place] = *value);
+        whole
+    };
     let objective = |point: &[f64]| -> Sloped {
-        let mut theta = start.clone();
-        free.iter()
-            .zip(point)
-            .for_each(|(place, value)| theta[*place] = *value);
-        let state = evaluate(model, &blocks_of(model, entries, &theta))?;
-        let slope = entries_from(entries, &criterion.slope(model, &state));
+        let whole = whole(point);
+        let (theta, logs) = whole.split_at(entries.len());
+        if !within_bounds(logs) {
+            return None;
+        }
+        let model = model.at_levels(logs);
+        let criterion = Criterion::of_model(&model, criterion.restricted);
+        let state = evaluate(&model, &blocks_of(&model, entries, theta))?;
+        let slope = criterion.slope(&model, &state, entries)?;
         let slope = free.iter().map(|place| slope[*place]).collect();
         Some((criterion.value(&state), slope))
     };
     let point = free.iter().map(|place| start[*place]).collect();
     let mut found = minimise(&objective, point)?;
-    let mut theta = start.clone();
-    free.iter()
-        .zip(&found.point)
-        .for_each(|(place, value)| theta[*place] = *value);
-    found.point = theta;
+    found.point = whole(&found.point);
     Some(found)
 }
 
@@ -147,9 +167,11 @@ fn to_edge(
     entries: &[Entry],
     found: Minimum,
 ) -> Estimate {
+    let (theta, logs) = parted(entries, found.point);
     let mut best = Estimate {
         entries: entries.to_vec(),
-        theta: with_signs(entries, found.point),
+        theta,
+        logs,
         at_zero: Vec::new(),
         value: found.value,
         evaluations: found.evaluations,
@@ -170,13 +192,19 @@ fn to_edge(
             })
         };
         let free: Vec<usize> = (0..entries.len()).filter(|k| !held(&entries[*k])).collect();
-        let start = without_column(model, entries, &best.theta, entry);
+        let free = [
+            free,
+            (entries.len()..entries.len() + best.logs.len()).collect(),
+        ]
+        .concat();
+        let mut start = without_column(model, entries, &best.theta, entry);
+        start.extend(&best.logs);
         let Some(other) = search(model, criterion, entries, &free, start) else {
             continue;
         };
         best.evaluations += other.evaluations;
         if other.value <= best.value + allowance(best.value) {
-            best.theta = with_signs(entries, other.point);
+            (best.theta, best.logs) = parted(entries, other.point);
             best.value = other.value;
             best.converged = other.converged;
             best.flat = other.flat;
@@ -184,6 +212,12 @@ fn to_edge(
         }
     }
     best
+}
+
+/// Entries, their signs as usual, and logarithms of levels.
+fn parted(entries: &[Entry], mut point: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
+    let logs = point.split_off(entries.len());
+    (with_signs(entries, point), logs)
 }
 
 fn allowance(value: f64) -> f64 {

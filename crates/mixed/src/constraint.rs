@@ -7,6 +7,7 @@
 use crate::boundary::Criterion;
 use crate::evaluate::evaluate;
 use crate::fit::{MixedFit, MixedMethod};
+use crate::levels::{level_slopes, within_bounds};
 use crate::minimise::{Sloped, descend};
 use crate::slope::slopes;
 use crate::theta::{Entry, blocks_of, place_of, relative_covariance, semidefinite_root};
@@ -15,6 +16,9 @@ use std::f64::consts::TAU;
 
 /// Least starting value of diagonal entries: zero lies on a ridge.
 const LEAST_START: f64 = 0.05;
+
+/// Share of a level's residual deviation at which the likelihood is as without scatter.
+const HARDLY: f64 = 1e-3;
 
 /// A standard deviation or correlation of a mixed model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +37,11 @@ pub enum VarianceParameter {
         /// Indices of the two columns.
         columns: [usize; 2],
     },
-    /// Residual standard deviation.
-    ResidualSd,
+    /// Residual standard deviation of a level; level 0 without levels.
+    ResidualSd {
+        /// Index of the level.
+        level: usize,
+    },
 }
 
 /// What is minimised when a parameter is held.
@@ -78,7 +85,7 @@ impl<'a> Constrained<'a> {
         let (term, order) = match parameter {
             VarianceParameter::Sd { term, column } => (Some(term), vec![column]),
             VarianceParameter::Correlation { term, columns } => (Some(term), columns.to_vec()),
-            VarianceParameter::ResidualSd => (None, Vec::new()),
+            VarianceParameter::ResidualSd { .. } => (None, Vec::new()),
         };
         let (others, others_start) = fit
             .estimate
@@ -115,7 +122,10 @@ impl<'a> Constrained<'a> {
                     names[first], names[second], given.name
                 )
             }
-            VarianceParameter::ResidualSd => "residual sd".to_owned(),
+            VarianceParameter::ResidualSd { level } => match &self.fit.model.levels {
+                None => "residual sd".to_owned(),
+                Some(levels) => format!("residual sd of {}", levels.names[level]),
+            },
         }
     }
 
@@ -125,20 +135,55 @@ impl<'a> Constrained<'a> {
         0.1 * self.fit.residual_sd / size
     }
 
+    /// The least value at which the likelihood is evaluated: levels of which one hardly varies
+    /// are as good as levels of which one does not vary.
+    pub(crate) fn least(&self) -> f64 {
+        match self.parameter {
+            VarianceParameter::Correlation { .. } => -1.0,
+            VarianceParameter::ResidualSd { .. } if self.fit.model.free_levels() > 0 => {
+                HARDLY * self.estimate
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Least -2 log likelihood with the parameter at this value.
     pub(crate) fn minimum(&self, value: f64) -> Option<f64> {
+        let value = value.max(self.least());
+        // Variances beside a held one stay as they are, not the ratios to it.
+        let moved = match self.parameter {
+            VarianceParameter::ResidualSd { level: 0 } if self.fit.model.free_levels() > 0 => {
+                self.estimate / value
+            }
+            _ => 1.0,
+        };
         let mut start = vec![self.fit.residual_sd.ln()];
-        start.extend(&self.others_start);
+        start.extend(self.others_start.iter().map(|own| own * moved));
         if let Some(held) = &self.held {
             start.extend(&held.start);
         }
+        start.resize(start.len() + self.fit.model.free_levels(), 2.0 * moved.ln());
         let objective = |point: &[f64]| self.deviance(value, point);
         descend(&objective, start).map(|(found, _)| found.value)
     }
 
-    /// -2 log likelihood and its gradient by log σ, other entries, held term's entries.
+    /// -2 log likelihood and its gradient by log σ, other entries, held term's entries,
+    /// logarithms of the residual variances of levels.
     fn deviance(&self, value: f64, free: &[f64]) -> Sloped {
-        let model = &self.fit.model;
+        let levels = self.fit.model.free_levels();
+        let (free, logs) = free.split_at(free.len() - levels);
+        let mut logs = logs.to_vec();
+        let held_level = match self.parameter {
+            VarianceParameter::ResidualSd { level } => level.checked_sub(1),
+            _ => None,
+        };
+        if let Some(place) = held_level {
+            logs[place] = 2.0 * (value.ln() - free[0]) - self.fit.level_ratios()[place + 1].ln();
+        }
+        if !within_bounds(&logs) {
+            return None;
+        }
+        let model = &*self.fit.model.at_levels(&logs);
         let point = self.point(value, free);
         let state = evaluate(model, &point.blocks)?;
         let variance = (2.0 * point.log_sigma).exp();
@@ -147,7 +192,7 @@ impl<'a> Constrained<'a> {
         let mut deviance = state.log_v - criterion.log_weights
             + n * (TAU * variance).ln()
             + state.squares / variance;
-        let (slopes, _) = slopes(model, &state);
+        let (slopes, projections) = slopes(model, &state);
         let mut by_block: Vec<DMatrix<f64>> = slopes
             .log_v
             .iter()
@@ -181,18 +226,29 @@ impl<'a> Constrained<'a> {
                     gradient[1 + self.others.len() + place] =
                         value * triangle[(1, 0)] + other * triangle[(1, 1)];
                 }
-                VarianceParameter::ResidualSd => {}
+                VarianceParameter::ResidualSd { .. } => {}
             }
         }
-        if self.parameter == VarianceParameter::ResidualSd {
-            gradient[0] = 0.0;
+        let by_level = level_slopes(model, &state, &projections)?;
+        gradient.extend(by_level.deviance(criterion.restricted, variance));
+        match held_level {
+            // The ratio to the first level follows from σ.
+            Some(place) => {
+                let own = gradient.len() - levels + place;
+                gradient[0] -= 2.0 * gradient[own];
+                gradient[own] = 0.0;
+            }
+            None if matches!(self.parameter, VarianceParameter::ResidualSd { .. }) => {
+                gradient[0] = 0.0;
+            }
+            None => {}
         }
         deviance.is_finite().then_some((deviance, gradient))
     }
 
     fn point(&self, value: f64, free: &[f64]) -> Point {
         let log_sigma = match self.parameter {
-            VarianceParameter::ResidualSd => value.max(f64::MIN_POSITIVE).ln(),
+            VarianceParameter::ResidualSd { level: 0 } => value.max(f64::MIN_POSITIVE).ln(),
             _ => free[0],
         };
         let (others, held_values) = free[1..].split_at(self.others.len());
@@ -212,7 +268,7 @@ impl<'a> Constrained<'a> {
                     triangle[(1, 0)] = length * value;
                     triangle[(1, 1)] = length * (1.0 - value * value).max(0.0).sqrt();
                 }
-                VarianceParameter::ResidualSd => {}
+                VarianceParameter::ResidualSd { .. } => {}
             }
             held.put(&triangle, &mut blocks[held.factor]);
         }
@@ -257,7 +313,9 @@ fn estimate_of(fit: &MixedFit, parameter: VarianceParameter) -> f64 {
         VarianceParameter::Correlation { term, columns } => {
             fit.variances[term].correlations[(columns[0], columns[1])]
         }
-        VarianceParameter::ResidualSd => fit.residual_sd,
+        VarianceParameter::ResidualSd { level } => {
+            fit.residual_sd * fit.level_ratios()[level].sqrt()
+        }
     }
 }
 
@@ -286,7 +344,7 @@ fn held_of(
         .filter(|place| match parameter {
             VarianceParameter::Sd { .. } => *place != (0, 0),
             VarianceParameter::Correlation { .. } => *place != (1, 0),
-            VarianceParameter::ResidualSd => true,
+            VarianceParameter::ResidualSd { .. } => true,
         })
         .collect();
     let start = free.iter().map(|(row, column)| {

@@ -80,6 +80,17 @@ pub enum MixedError {
     SingularInformation,
     #[error("a confidence of {confidence} is none; give a share between 0 and 1, as 0.95")]
     WrongConfidence { confidence: f64 },
+    #[error(
+        "{column}: the level {level:?} {what}, so its variance cannot be estimated: merge it with \
+         another level, leave its rows out, or fit without --variance"
+    )]
+    LevelVariance {
+        column: String,
+        level: String,
+        what: String,
+    },
+    #[error("new rows, row {row}: the model has no such level of {column}")]
+    UnknownLevel { column: String, row: usize },
     #[error("the contrast is zero: it tests nothing; give at least one weight that differs from 0")]
     EmptyContrast,
 }

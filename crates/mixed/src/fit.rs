@@ -3,14 +3,16 @@
 use crate::boundary::{Criterion, Estimate, estimate};
 use crate::effects::{RandomEffects, fitted_values, random_effects};
 use crate::error::MixedError;
-use crate::evaluate::State;
+use crate::evaluate::{State, evaluate};
 use crate::finding::MixedFinding;
 use crate::model::{MixedModel, prepare_mixed, prepare_weighted};
+use crate::residual_levels::LevelVariances;
 use crate::slope::{Projections, slopes};
 use crate::term::RandomTerm;
-use crate::theta::{relative_covariance, semidefinite_root};
+use crate::theta::{blocks_of, relative_covariance, semidefinite_root};
 use crate::weights::Weights;
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// What is maximised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,6 +22,16 @@ pub enum MixedMethod {
     Reml,
     /// Maximum likelihood: for comparing models with different fixed effects.
     MaximumLikelihood,
+}
+
+impl MixedMethod {
+    /// Its usual abbreviation.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reml => "REML",
+            Self::MaximumLikelihood => "ML",
+        }
+    }
 }
 
 /// How a mixed model is fitted.
@@ -57,8 +69,10 @@ pub struct MixedFit {
     pub coefficients: Vec<f64>,
     /// Their covariance σ² (X'V⁻¹X)⁻¹, variances taken as known.
     pub covariance: DMatrix<f64>,
-    /// Residual standard deviation σ.
+    /// Residual standard deviation σ; of the first level where levels differ.
     pub residual_sd: f64,
+    /// Residual variances of levels, where they differ.
+    pub levels: Option<LevelVariances>,
     /// Variances of each random term.
     pub variances: Vec<TermVariance>,
     /// Lower triangles (or diagonals) of the relative covariance factors, as in lme4.
@@ -160,6 +174,11 @@ pub fn fit_mixed_weighted(
 pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<MixedFit, MixedError> {
     let criterion = Criterion::of_model(&model, options.method == MixedMethod::Reml);
     let (estimate, state) = estimate(&model, &criterion).ok_or(MixedError::NoCriterion)?;
+    let moved = match model.at_levels(&estimate.logs) {
+        Cow::Owned(moved) => Some(moved),
+        Cow::Borrowed(_) => None,
+    };
+    let model = moved.unwrap_or(model);
     check_residual(&model, &state)?;
     let (_, projections) = slopes(&model, &state);
 
@@ -179,7 +198,7 @@ pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<Mixe
         .map(|term| term_variance(&model, &state, term, variance))
         .collect();
 
-    let count = p + estimate.entries.len() as f64 + 1.0;
+    let count = p + (estimate.entries.len() + model.free_levels()) as f64 + 1.0;
     let value = estimate.value;
     Ok(MixedFit {
         method: options.method,
@@ -199,6 +218,7 @@ pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<Mixe
         residuals,
         evaluations: estimate.evaluations,
         findings: findings_of(&model, &state, &estimate),
+        levels: None,
         model,
         estimate,
         state,
@@ -222,6 +242,35 @@ fn check_residual(model: &MixedModel, state: &State) -> Result<(), MixedError> {
 }
 
 impl MixedFit {
+    /// Residual variance of each level over σ²; 1 for a model with one variance.
+    pub fn level_ratios(&self) -> Vec<f64> {
+        let Some(levels) = &self.model.levels else {
+            return vec![1.0];
+        };
+        let mut ratios = vec![1.0; levels.names.len()];
+        for (row, level) in levels.level.iter().enumerate() {
+            ratios[*level] = 1.0 / self.model.weights.weight(row);
+        }
+        ratios
+    }
+
+    /// Coordinates of the criterion at the estimate: free entries of the relative covariance
+    /// factors, then logarithms of the levels' residual variances over the estimated ones.
+    pub(crate) fn coordinates(&self) -> Vec<f64> {
+        let mut all = self.estimate.theta.clone();
+        all.resize(all.len() + self.model.free_levels(), 0.0);
+        all
+    }
+
+    /// The model and its factorisation at other coordinates; `None` where numbers overflow.
+    pub(crate) fn at(&self, coordinates: &[f64]) -> Option<(Cow<'_, MixedModel>, State)> {
+        let entries = &self.estimate.entries;
+        let (theta, logs) = coordinates.split_at(entries.len());
+        let model = self.model.at_levels(logs);
+        let state = evaluate(&model, &blocks_of(&model, entries, theta))?;
+        Some((model, state))
+    }
+
     /// Covariance of the coefficients; rows.
     pub fn covariance_rows(&self) -> Vec<Vec<f64>> {
         let rows = self.covariance.row_iter();

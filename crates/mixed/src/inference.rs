@@ -3,12 +3,15 @@
 use crate::boundary::Criterion;
 use crate::coefficient::{Coefficient, Estimated};
 use crate::error::MixedError;
-use crate::evaluate::{State, evaluate};
+use crate::evaluate::State;
 use crate::finding::MixedFinding;
 use crate::fit::{MixedFit, MixedMethod};
+use crate::levels::level_slopes;
 use crate::minimise::{FLAT, differences, directions};
+use crate::model::MixedModel;
+use crate::slope::slopes;
 use crate::term::{check_finite, check_length};
-use crate::theta::{blocks_of, entries_from};
+use crate::theta::entries_from;
 use nalgebra::{DMatrix, DVector};
 use windfall_distribution::tail::{f_upper, t_two_sided, t_upper_quantile};
 
@@ -18,7 +21,8 @@ const RANK: f64 = 1e-10;
 /// Covariance of the variance parameters, and how the coefficients' covariance
 /// depends on them: all that Satterthwaite's method needs of a fit.
 ///
-/// The parameters are the free entries of the relative covariance factors, then σ.
+/// The parameters are the free entries of the relative covariance factors, logarithms of the
+/// ratios of the levels' residual variances, then σ.
 #[derive(Clone, Debug)]
 pub struct VarianceUncertainty {
     /// Covariance of the parameters, without flat directions.
@@ -71,20 +75,17 @@ pub struct FTest {
 pub fn variance_uncertainty(fit: &MixedFit) -> Result<VarianceUncertainty, MixedError> {
     let p = fit.model.coefficients();
     let sigma = fit.residual_sd;
-    let theta = &fit.estimate.theta;
-    let k = theta.len();
-    // outputs: gradient by θ of log|V| (+ log|X'V⁻¹X|), gradient of the squares,
-    // and the coefficients' covariance over σ²
+    let here = fit.coordinates();
+    let k = here.len();
+    // outputs: gradient of -2 log likelihood by the coordinates, and the coefficients'
+    // covariance over σ²
     let outputs = |at: &[f64]| -> Option<Vec<f64>> {
-        let state = evaluate(
-            &fit.model,
-            &blocks_of(&fit.model, &fit.estimate.entries, at),
-        )?;
-        let mut all = deviance_slope(fit, &state);
+        let (model, state) = fit.at(at)?;
+        let mut all = deviance_slope(fit, &model, &state)?;
         all.extend(covariance_of(fit, &state).as_slice());
         Some(all)
     };
-    let rows = differences(&outputs, theta).ok_or(MixedError::NoCriterion)?;
+    let rows = differences(&outputs, &here).ok_or(MixedError::NoCriterion)?;
 
     let mut second = DMatrix::zeros(k + 1, k + 1);
     for i in 0..k {
@@ -94,7 +95,7 @@ pub fn variance_uncertainty(fit: &MixedFit) -> Result<VarianceUncertainty, Mixed
     }
     // deviance = logs + denominator log(2πσ²) + squares / σ²
     let criterion = Criterion::of_model(&fit.model, fit.method == MixedMethod::Reml);
-    let squares_slope = squares_slope(fit, &fit.state);
+    let squares_slope = squares_slope(fit).ok_or(MixedError::NoCriterion)?;
     for i in 0..k {
         second[(i, k)] = -2.0 * squares_slope[i] / sigma.powi(3);
         second[(k, i)] = second[(i, k)];
@@ -122,10 +123,10 @@ pub fn variance_uncertainty(fit: &MixedFit) -> Result<VarianceUncertainty, Mixed
     })
 }
 
-/// Gradient by θ, at fixed σ, of -2 log likelihood.
-fn deviance_slope(fit: &MixedFit, state: &State) -> Vec<f64> {
+/// Gradient by the coordinates, at fixed σ, of -2 log likelihood.
+fn deviance_slope(fit: &MixedFit, model: &MixedModel, state: &State) -> Option<Vec<f64>> {
     let restricted = fit.method == MixedMethod::Reml;
-    let (slopes, _) = crate::slope::slopes(&fit.model, state);
+    let (slopes, projections) = slopes(model, state);
     let variance = fit.residual_sd * fit.residual_sd;
     let mut sum = slopes.log_v;
     for (factor, sum) in sum.iter_mut().enumerate() {
@@ -134,12 +135,19 @@ fn deviance_slope(fit: &MixedFit, state: &State) -> Vec<f64> {
             *sum += &slopes.log_fixed[factor];
         }
     }
-    entries_from(&fit.estimate.entries, &sum)
+    let mut slope = entries_from(&fit.estimate.entries, &sum);
+    let levels = level_slopes(model, state, &projections)?;
+    slope.extend(levels.deviance(restricted, variance));
+    Some(slope)
 }
 
-fn squares_slope(fit: &MixedFit, state: &State) -> Vec<f64> {
-    let (slopes, _) = crate::slope::slopes(&fit.model, state);
-    entries_from(&fit.estimate.entries, &slopes.squares)
+/// Gradient by the coordinates of the penalised squares, at the estimate.
+fn squares_slope(fit: &MixedFit) -> Option<Vec<f64>> {
+    let (slopes, projections) = slopes(&fit.model, &fit.state);
+    let mut slope = entries_from(&fit.estimate.entries, &slopes.squares);
+    let levels = level_slopes(&fit.model, &fit.state, &projections)?;
+    slope.extend(levels.squares.iter().skip(1));
+    Some(slope)
 }
 
 /// Covariance of the coefficients over σ², in the columns as given.

@@ -8,15 +8,19 @@
 //! over σ², D = ΛΛ', M = Z'V⁻¹Z and B = Z'V⁻¹X,
 //!
 //! ```text
-//! Z'V⁻²Z = M - M D M,  Z'V⁻²X = B - M D B,  X'V⁻²X = X'V⁻¹X - B'D B,
-//! X'V⁻³X = X'V⁻²X - (Z'V⁻²X)'D B
+//! V⁻¹Z = Z - Z D M,  V⁻¹X = X - Z D B,  V⁻¹ = I - Z K Z',  K = D - D M D
 //! ```
+//!
+//! The residual variance of a level is the parameter of I over its rows, weighted as the model
+//! is; without levels there is one, of all rows.
 
+use crate::blocks::rows_by_group;
 use crate::coefficient::{Coefficient, Estimated};
 use crate::error::MixedError;
 use crate::fit::{MixedFit, MixedMethod};
 use crate::inference::{FTest, check_contrast, test_of};
 use crate::minimise::directions;
+use crate::model::MixedModel;
 use crate::theta::Entry;
 use nalgebra::{DMatrix, DVector};
 use windfall_distribution::tail::f_upper;
@@ -105,7 +109,7 @@ fn inverse(information: DMatrix<f64>) -> Result<DMatrix<f64>, MixedError> {
     }))
 }
 
-/// Sums over the random effects; the last parameter is the residual variance.
+/// Sums over the random effects and rows; the last parameters are the residual variances.
 struct Sums {
     /// tr(V⁻¹GᵣV⁻¹Gₛ).
     traces: DMatrix<f64>,
@@ -127,8 +131,8 @@ struct Effect {
 /// Random effects that are independent of all others.
 struct Piece {
     effects: Vec<Effect>,
-    /// Z'Z.
-    square: DMatrix<f64>,
+    /// Its rows.
+    rows: Vec<usize>,
     /// Z'V⁻¹X.
     projection: DMatrix<f64>,
 }
@@ -137,13 +141,7 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
     let model = &fit.model;
     let p = model.coefficients();
     let parameters = &fit.estimate.entries;
-    let count = parameters.len() + 1;
-    let phi_inverse = fit
-        .state
-        .covariance
-        .clone()
-        .try_inverse()
-        .ok_or(MixedError::SingularInformation)?;
+    let count = parameters.len() + model.free_levels() + 1;
     let mut sums = Sums {
         traces: DMatrix::zeros(count, count),
         slopes: vec![DMatrix::zeros(p, p); count],
@@ -151,14 +149,10 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
             .map(|r| vec![DMatrix::zeros(p, p); r + 1])
             .collect(),
     };
-    // the residual's own: tr V⁻² = n - Σ ..., X'V⁻²X = X'V⁻¹X - Σ ...
-    let last = count - 1;
-    sums.traces[(last, last)] = model.rows() as f64;
-    sums.slopes[last] = -phi_inverse.clone();
-    sums.crossed[last][last] = phi_inverse;
     if model.factors.len() == 1 {
-        for group in 0..model.leaf.groups {
-            add_piece(fit, parameters, &group_piece(fit, group), &mut sums)?;
+        let rows = rows_by_group(&model.factors[0]);
+        for (group, rows) in rows.into_iter().enumerate() {
+            add_piece(fit, parameters, &group_piece(fit, group, rows), &mut sums)?;
         }
     } else {
         let effects = model.leaf.groups * model.leaf.width + model.trunk.envelope.rows();
@@ -179,10 +173,9 @@ fn sums_of(fit: &MixedFit) -> Result<Sums, MixedError> {
 }
 
 /// One group of the only factor.
-fn group_piece(fit: &MixedFit, group: usize) -> Piece {
+fn group_piece(fit: &MixedFit, group: usize, rows: Vec<usize>) -> Piece {
     let (leaf, p) = (&fit.model.leaf, fit.model.coefficients());
     let q = leaf.width;
-    let square = &leaf.square[group * q * q..(group + 1) * q * q];
     let effect = |column| Effect {
         factor: 0,
         column,
@@ -190,7 +183,7 @@ fn group_piece(fit: &MixedFit, group: usize) -> Piece {
     };
     Piece {
         effects: (0..q).map(effect).collect(),
-        square: DMatrix::from_row_slice(q, q, square),
+        rows,
         projection: DMatrix::from_fn(q, p, |i, j| {
             fit.projections[0][(group * q + i) * (p + 1) + j]
         }),
@@ -202,10 +195,8 @@ fn whole_piece(fit: &MixedFit) -> Piece {
     let model = &fit.model;
     let p = model.coefficients();
     let mut effects = Vec::new();
-    let mut starts = Vec::new();
     let mut projection = Vec::new();
     for (factor, given) in model.factors.iter().enumerate() {
-        starts.push(effects.len());
         for _ in 0..given.groups {
             let group = effects.len();
             effects.extend((0..given.width).map(|column| Effect {
@@ -218,26 +209,75 @@ fn whole_piece(fit: &MixedFit) -> Piece {
             projection.extend_from_slice(&row[..p]);
         }
     }
-    let mut square = DMatrix::zeros(effects.len(), effects.len());
-    let mut entries: Vec<(usize, f64)> = Vec::new();
-    for row in 0..model.rows() {
-        entries.clear();
-        for (factor, start) in model.factors.iter().zip(&starts) {
-            let first = start + factor.group[row] * factor.width;
-            let design = &factor.design[row * factor.width..(row + 1) * factor.width];
-            entries.extend(design.iter().enumerate().map(|(k, z)| (first + k, *z)));
-        }
-        for (i, a) in &entries {
-            for (j, b) in &entries {
-                square[(*i, *j)] += a * b;
-            }
-        }
-    }
     Piece {
         projection: DMatrix::from_row_slice(effects.len(), p, &projection),
         effects,
-        square,
+        rows: (0..model.rows()).collect(),
     }
+}
+
+/// Sums over the rows of a level.
+struct LevelSums {
+    /// Rows.
+    rows: f64,
+    /// Z'Z.
+    square: DMatrix<f64>,
+    /// Z'V⁻¹X.
+    cross: DMatrix<f64>,
+    /// X'V⁻²X: the squares of V⁻¹X.
+    fixed: DMatrix<f64>,
+}
+
+/// Sums over the rows of each level.
+///
+/// * `db`: D B
+fn level_sums(model: &MixedModel, piece: &Piece, db: &DMatrix<f64>) -> Vec<LevelSums> {
+    let (q, p) = (piece.effects.len(), model.coefficients());
+    let empty = || LevelSums {
+        rows: 0.0,
+        square: DMatrix::zeros(q, q),
+        cross: DMatrix::zeros(q, p),
+        fixed: DMatrix::zeros(p, p),
+    };
+    let mut sums: Vec<LevelSums> = (0..=model.free_levels()).map(|_| empty()).collect();
+    // One factor's group is the whole piece.
+    let whole = model.factors.len() > 1;
+    let mut starts = vec![0];
+    for factor in &model.factors {
+        starts.push(starts[starts.len() - 1] + factor.groups * factor.width);
+    }
+    let mut entries: Vec<(usize, f64)> = Vec::new();
+    let mut rest = vec![0.0; p];
+    for row in piece.rows.iter().copied() {
+        entries.clear();
+        for (factor, start) in model.factors.iter().zip(&starts) {
+            let group = if whole { factor.group[row] } else { 0 };
+            let first = start + group * factor.width;
+            let design = &factor.design[row * factor.width..(row + 1) * factor.width];
+            entries.extend(design.iter().enumerate().map(|(k, z)| (first + k, *z)));
+        }
+        for (column, own) in rest.iter_mut().enumerate() {
+            let groups = entries.iter().map(|(k, z)| z * db[(*k, column)]);
+            *own = model.basis.q[column][row] - groups.sum::<f64>();
+        }
+        let level = model.levels.as_ref().map_or(0, |own| own.level[row]);
+        let sums = &mut sums[level];
+        sums.rows += 1.0;
+        for (i, a) in &entries {
+            for (j, b) in &entries {
+                sums.square[(*i, *j)] += a * b;
+            }
+            for (column, own) in rest.iter().enumerate() {
+                sums.cross[(*i, column)] += a * own;
+            }
+        }
+        for (column, own) in rest.iter().enumerate() {
+            for (other, value) in rest.iter().enumerate() {
+                sums.fixed[(other, column)] += own * value;
+            }
+        }
+    }
+    sums
 }
 
 /// Adds what the effects of a piece contribute.
@@ -249,8 +289,12 @@ fn add_piece(
 ) -> Result<(), MixedError> {
     let (root, own) = roots_of(fit, piece);
     let last = parameters.len();
+    let b = &piece.projection;
+    let db = &own * b;
+    let levels = level_sums(&fit.model, piece, &db);
+    let square: DMatrix<f64> = levels.iter().map(|own| &own.square).sum();
     // M = Z'Z - Z'ZΛ (Λ'Z'ZΛ + I)⁻¹ Λ'Z'Z
-    let scaled = root.tr_mul(&piece.square);
+    let scaled = root.tr_mul(&square);
     let mut middle = &scaled * &root;
     (0..middle.nrows()).for_each(|i| middle[(i, i)] += 1.0);
     let cholesky = middle.cholesky().ok_or(MixedError::SingularInformation)?;
@@ -258,11 +302,9 @@ fn add_piece(
         .l()
         .solve_lower_triangular(&scaled)
         .ok_or(MixedError::SingularInformation)?;
-    let m = &piece.square - half.tr_mul(&half);
-    let b = &piece.projection;
-    let (dm, db) = (&own * &m, &own * b);
-    let m2 = &m - m.tr_mul(&dm);
-    let b2 = b - m.tr_mul(&db);
+    let m = &square - half.tr_mul(&half);
+    let dm = &own * &m;
+    let inner = &own - &dm * &own;
 
     let moved: Vec<DMatrix<f64>> = parameters.iter().map(|e| apply(e, piece, &m)).collect();
     let moved_b: Vec<DMatrix<f64>> = parameters.iter().map(|e| apply(e, piece, b)).collect();
@@ -272,12 +314,28 @@ fn add_piece(
             sums.crossed[r][s] += moved_b[r].tr_mul(&m) * &moved_b[s];
         }
         sums.slopes[r] -= moved_b[r].tr_mul(b);
-        sums.traces[(last, r)] += apply(&parameters[r], piece, &m2).trace();
-        sums.crossed[last][r] += b2.tr_mul(&moved_b[r]);
     }
-    sums.traces[(last, last)] -= dm.trace() + own.component_mul(&m2).sum();
-    sums.slopes[last] += b.tr_mul(&db);
-    sums.crossed[last][last] -= b.tr_mul(&db) + b2.tr_mul(&db);
+    let taken: Vec<DMatrix<f64>> = levels.iter().map(|own| &inner * &own.square).collect();
+    for (l, level) in levels.iter().enumerate() {
+        let place = last + l;
+        // Z'V⁻¹IₗV⁻¹Z and Z'V⁻¹IₗV⁻¹X
+        let shared = dm.tr_mul(&level.square);
+        let effects = &level.square - &shared - shared.transpose() + &shared * &dm;
+        let fixed = &level.cross - dm.tr_mul(&level.cross);
+        for r in 0..last {
+            sums.traces[(place, r)] += apply(&parameters[r], piece, &effects).trace();
+            sums.crossed[place][r] += fixed.tr_mul(&moved_b[r]);
+        }
+        for k in 0..=l {
+            let both = taken[l].component_mul(&taken[k].transpose()).sum();
+            sums.traces[(place, last + k)] += both;
+            let solved = &inner * &levels[k].cross;
+            sums.crossed[place][last + k] -= level.cross.tr_mul(&solved);
+        }
+        sums.traces[(place, place)] += level.rows - 2.0 * taken[l].trace();
+        sums.crossed[place][place] += &level.fixed;
+        sums.slopes[place] -= &level.fixed;
+    }
     Ok(())
 }
 

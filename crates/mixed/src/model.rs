@@ -3,6 +3,7 @@
 use crate::basis::{Basis, Dependent, norm, orthonormal_basis};
 use crate::blocks::{Factor, Leaf, TermPlace, Trunk, fixed_square, leaf_of, trunk_of};
 use crate::error::MixedError;
+use crate::residual_levels::ResidualLevels;
 use crate::term::{RandomTerm, check_finite, check_length, check_term};
 use crate::weights::Weights;
 use nalgebra::{DMatrix, DVector};
@@ -26,6 +27,10 @@ pub struct MixedModel {
     pub(crate) x: DMatrix<f64>,
     /// Orthonormal fixed columns and their triangle.
     pub(crate) basis: Basis,
+    /// What ordinary least squares leaves of the response.
+    pub(crate) residual: Vec<f64>,
+    /// Which level decides on the residual variance of each row; none where there is one.
+    pub(crate) levels: Option<ResidualLevels>,
     /// Coefficients of ordinary least squares on the orthonormal columns.
     pub(crate) ordinary: DVector<f64>,
     /// Random terms as given.
@@ -56,6 +61,11 @@ impl MixedModel {
     /// What the rows weigh.
     pub fn weights(&self) -> &Weights {
         &self.weights
+    }
+
+    /// Which level decides on the residual variance of each row; none where there is one.
+    pub fn levels(&self) -> Option<&ResidualLevels> {
+        self.levels.as_ref()
     }
 
     /// The random terms.
@@ -142,6 +152,8 @@ pub fn prepare_weighted(
         x_names: x_names.to_vec(),
         x: x.clone(),
         basis,
+        residual,
+        levels: None,
         ordinary,
         terms: terms.to_vec(),
         factors,

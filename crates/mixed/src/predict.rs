@@ -1,15 +1,15 @@
 //! Predictions for known and for new groups.
 
-use crate::basis::dot;
+use crate::basis::add_scaled;
 use crate::error::MixedError;
-use crate::evaluate::{LeafScratch, State, eliminate, evaluate, solve_lower};
 use crate::fit::MixedFit;
 use crate::inference::{VarianceUncertainty, degrees_of_freedom, half_width};
 use crate::minimise::differences;
 use crate::model::MixedModel;
-use crate::slope::{Projections, slopes};
+use crate::row::{Row, RowWork};
+use crate::slope::slopes;
 use crate::term::{check_finite, check_length};
-use crate::theta::{blocks_of, place_of};
+use crate::theta::place_of;
 use nalgebra::{DMatrix, DVector};
 
 /// Where to predict.
@@ -19,6 +19,8 @@ pub struct NewRows {
     pub x: DMatrix<f64>,
     /// The random terms, in the model's order.
     pub terms: Vec<NewTerm>,
+    /// Level of the residual variance of each row; none where there is one variance.
+    pub level: Vec<usize>,
 }
 
 /// One random term where to predict.
@@ -71,31 +73,40 @@ pub fn predict_mixed(
     confidence: f64,
 ) -> Result<Vec<MixedPrediction>, MixedError> {
     check_rows(&fit.model, rows)?;
-    let prepared: Vec<Row> = (0..rows.x.nrows())
+    let prepared: Vec<(Row, Vec<bool>)> = (0..rows.x.nrows())
         .map(|row| prepare(fit, rows, row))
         .collect();
-    let at = |theta: &[f64]| -> Option<Vec<f64>> {
-        let state = evaluate(
-            &fit.model,
-            &blocks_of(&fit.model, &fit.estimate.entries, theta),
-        )?;
-        let (_, projections) = slopes(&fit.model, &state);
-        let variances = prepared
-            .iter()
-            .map(|row| row.variance(&fit.model, &state, &projections));
+    let at = |coordinates: &[f64]| -> Option<Vec<f64>> {
+        let (model, state) = fit.at(coordinates)?;
+        let (_, projections) = slopes(&model, &state);
+        let mut work = RowWork::default();
+        let variances = prepared.iter().map(|(row, _)| {
+            let (random, fixed) = row.variances(&model, &state, &projections, &mut work)?;
+            Some(random + fixed)
+        });
         variances.collect()
     };
-    let variances = at(&fit.estimate.theta).ok_or(MixedError::NoCriterion)?;
-    let changes = differences(&at, &fit.estimate.theta).ok_or(MixedError::NoCriterion)?;
+    let here = fit.coordinates();
+    let variances = at(&here).ok_or(MixedError::NoCriterion)?;
+    let changes = differences(&at, &here).ok_or(MixedError::NoCriterion)?;
 
-    let sigma = fit.residual_sd;
-    let predictions = prepared.iter().enumerate().map(|(row, prepared)| {
-        let (population, value) = expected(fit, rows, row, prepared);
-        let half = |relative: f64| {
+    let (sigma, ratios) = (fit.residual_sd, fit.level_ratios());
+    let predictions = prepared.iter().enumerate().map(|(row, (_, unseen))| {
+        let (population, value) = expected(fit, rows, row, unseen);
+        // with a further measurement, or without
+        let half = |further: bool| {
             let mut slope: Vec<f64> = changes
                 .iter()
                 .map(|change| change[row] * sigma * sigma)
                 .collect();
+            let mut relative = variances[row];
+            if further {
+                let level = rows.level.get(row).copied().unwrap_or_default();
+                relative += ratios[level];
+                if level > 0 {
+                    slope[fit.estimate.theta.len() + level - 1] += ratios[level] * sigma * sigma;
+                }
+            }
             slope.push(2.0 * sigma * relative);
             let variance = relative * sigma * sigma;
             let df = degrees_of_freedom(uncertainty, variance, &DVector::from_vec(slope));
@@ -105,8 +116,8 @@ pub fn predict_mixed(
                 half_width(confidence, df) * variance.sqrt(),
             )
         };
-        let (se, df, mean) = half(variances[row]);
-        let (_, _, single) = half(variances[row] + 1.0);
+        let (se, df, mean) = half(false);
+        let (_, _, single) = half(true);
         MixedPrediction {
             population,
             predicted: value,
@@ -123,6 +134,17 @@ pub fn predict_mixed(
 
 fn check_rows(model: &MixedModel, rows: &NewRows) -> Result<(), MixedError> {
     let n = rows.x.nrows();
+    if let Some(levels) = &model.levels {
+        check_length("levels of the new rows", rows.level.len(), n)?;
+        let known = levels.names.len();
+        let missing = rows.level.iter().position(|own| *own >= known);
+        if let Some(row) = missing {
+            return Err(MixedError::UnknownLevel {
+                column: levels.column.clone(),
+                row: row + 1,
+            });
+        }
+    }
     check_length(
         "columns of the new fixed effects",
         rows.x.ncols(),
@@ -160,7 +182,9 @@ fn check_rows(model: &MixedModel, rows: &NewRows) -> Result<(), MixedError> {
 }
 
 /// Fixed effects, and with the effects of the row's groups.
-fn expected(fit: &MixedFit, rows: &NewRows, row: usize, prepared: &Row) -> (f64, f64) {
+///
+/// * `unseen`: whether each term's group was not measured
+fn expected(fit: &MixedFit, rows: &NewRows, row: usize, unseen: &[bool]) -> (f64, f64) {
     let population: f64 = rows
         .x
         .row(row)
@@ -170,7 +194,7 @@ fn expected(fit: &MixedFit, rows: &NewRows, row: usize, prepared: &Row) -> (f64,
         .sum();
     let mut value = population;
     for (term, new) in rows.terms.iter().enumerate() {
-        if let (Some(group), false) = (new.group[row], prepared.unseen[term]) {
+        if let (Some(group), false) = (new.group[row], unseen[term]) {
             let effects = &fit.effects[term].values[group];
             value += new
                 .columns
@@ -183,28 +207,17 @@ fn expected(fit: &MixedFit, rows: &NewRows, row: usize, prepared: &Row) -> (f64,
     (population, value)
 }
 
-/// A row in the model's own columns.
-struct Row {
-    /// Fixed columns.
-    x: DVector<f64>,
-    /// Groups that were measured: factor, group, columns.
-    known: Vec<(usize, usize, DVector<f64>)>,
-    /// Groups that were not: factor, columns, each its own.
-    new: Vec<(usize, DVector<f64>)>,
-    /// Whether each term's group was not measured.
-    unseen: Vec<bool>,
-}
-
-fn prepare(fit: &MixedFit, rows: &NewRows, row: usize) -> Row {
+/// A row in the model's own columns, and whether each term's group was not measured.
+fn prepare(fit: &MixedFit, rows: &NewRows, row: usize) -> (Row, Vec<bool>) {
     let model = &fit.model;
     let given = DVector::from_iterator(model.coefficients(), rows.x.row(row).iter().copied());
     let x = model.basis.r.tr_solve_upper_triangular(&given);
     let mut prepared = Row {
-        x: x.unwrap_or(given),
+        x: x.unwrap_or(given).as_slice().to_vec(),
         known: Vec::new(),
         new: Vec::new(),
-        unseen: Vec::new(),
     };
+    let mut unseen = Vec::new();
     for (term, new) in rows.terms.iter().enumerate() {
         let (factor, place) = place_of(model, term);
         let mut z = DVector::zeros(model.factors[factor].width);
@@ -216,89 +229,20 @@ fn prepare(fit: &MixedFit, rows: &NewRows, row: usize) -> Row {
             .tr_solve_upper_triangular(&z)
             .unwrap_or(z);
         let group = new.group[row].and_then(|group| model.group_place[term][group]);
-        prepared.unseen.push(group.is_none());
+        unseen.push(group.is_none());
         match group {
-            None => prepared.new.push((factor, z)),
+            None => prepared.new.push((factor, z.as_slice().to_vec())),
             Some(group) => {
                 let mut known = prepared.known.iter_mut();
                 match known.find(|(f, g, _)| (*f, *g) == (factor, group)) {
-                    Some((_, _, sum)) => *sum += z,
-                    None => prepared.known.push((factor, group, z)),
+                    Some((_, _, sum)) => add_scaled(sum, 1.0, z.as_slice()),
+                    None => {
+                        let own = (factor, group, z.as_slice().to_vec());
+                        prepared.known.push(own);
+                    }
                 }
             }
         }
     }
-    prepared
-}
-
-impl Row {
-    /// Variance of the prediction's error over σ²: z'Λ A⁻¹ Λ'z + d'(X'V⁻¹X)⁻¹d with
-    /// d = x - X'V⁻¹Z Λ Λ' z, and what new groups add.
-    fn variance(
-        &self,
-        model: &MixedModel,
-        state: &State,
-        projections: &Projections,
-    ) -> Option<f64> {
-        let p = model.coefficients();
-        let mut d = self.x.clone();
-        let mut sum = 0.0;
-        let mut trunk = vec![0.0; model.trunk.envelope.rows()];
-        for (factor, group, z) in &self.known {
-            let width = model.factors[*factor].width;
-            let block = &state.blocks[*factor];
-            let root = block.tr_mul(z);
-            let smooth = block * &root;
-            for column in 0..width {
-                let row = &projections[*factor][(group * width + column) * (p + 1)..][..p];
-                d.iter_mut()
-                    .zip(row)
-                    .for_each(|(d, b)| *d -= b * smooth[column]);
-            }
-            if *factor == 0 {
-                sum += leaf_variance(model, state, *group, root, &mut trunk)?;
-            } else {
-                let first = model.trunk.offsets[factor - 1] + group * width;
-                (0..width).for_each(|k| trunk[first + k] += z[k]);
-            }
-        }
-        let mut solved = crate::evaluate::times_blocks(
-            model,
-            &state.blocks,
-            &trunk,
-            crate::evaluate::Side::Transposed,
-        );
-        model
-            .trunk
-            .envelope
-            .solve_lower(&state.trunk_factor, &mut solved, 1);
-        sum += dot(&solved, &solved);
-        for (factor, z) in &self.new {
-            sum += state.blocks[*factor].tr_mul(z).norm_squared();
-        }
-        Some(sum + (d.transpose() * &state.covariance * d)[(0, 0)])
-    }
-}
-
-/// |L⁻¹Λ'z|² of a leaf group; takes K'L⁻¹Λ'z from the trunk's columns.
-fn leaf_variance(
-    model: &MixedModel,
-    state: &State,
-    group: usize,
-    root: DVector<f64>,
-    trunk: &mut [f64],
-) -> Option<f64> {
-    let leaf = &model.leaf;
-    let mut scratch = LeafScratch::default();
-    eliminate(leaf, &state.blocks[0], group, &mut scratch)?;
-    let mut solved = root.as_slice().to_vec();
-    solve_lower(&scratch.factor, leaf.width, &mut solved, 1);
-    let met = &leaf.met[leaf.met_start[group]..leaf.met_start[group + 1]];
-    let wide = met.len() + model.coefficients() + 1;
-    for (row, value) in scratch.cross.chunks_exact(wide).zip(&solved) {
-        for (column, k) in met.iter().zip(row) {
-            trunk[*column] -= k * value;
-        }
-    }
-    Some(dot(&solved, &solved))
+    (prepared, unseen)
 }

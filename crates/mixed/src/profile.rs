@@ -121,7 +121,8 @@ fn parameters_of(fit: &MixedFit) -> Vec<VarianceParameter> {
             }
         }
     }
-    parameters.push(VarianceParameter::ResidualSd);
+    let levels = 0..=fit.model.free_levels();
+    parameters.extend(levels.map(|level| VarianceParameter::ResidualSd { level }));
     parameters
 }
 
@@ -151,10 +152,12 @@ fn interval(
         VarianceParameter::Correlation { .. } => (-1.0, 0.25, 1.0),
         _ => (0.0, estimate.max(constrained.size()) * 0.5, f64::INFINITY),
     };
+    let least = constrained.least();
     let low = if !estimate.is_finite() {
         lowest
     } else {
-        lower_end(&rise, estimate, lowest, z)
+        let low = lower_end(&rise, estimate, least, z);
+        if low > least { low } else { lowest }
     };
     let high = if estimate.is_finite() {
         upper_end(&rise, estimate, step, highest, z)

@@ -4,6 +4,7 @@
 
 mod cases;
 mod closed_form;
+mod levels;
 mod odd_input;
 mod recovers;
 mod reference;

@@ -135,6 +135,7 @@ fn closed_form_predictions_of_a_balanced_one_way() {
     let fit = fit_one_way(&data);
     let uncertainty = variance_uncertainty(&fit).unwrap();
     let rows = NewRows {
+        level: Vec::new(),
         x: DMatrix::from_element(2, 1, 1.0),
         terms: vec![NewTerm {
             columns: vec![vec![1.0; 2]],
@@ -204,6 +205,7 @@ fn closed_form_prediction_errors_of_crossed_groups_by_dense_matrices() {
     .unwrap();
     assert_eq!(data.findings, []);
     let rows = NewRows {
+        level: Vec::new(),
         x: DMatrix::from_row_slice(3, 2, &[1.0, 0.4, 1.0, 0.9, 1.0, 0.2]),
         terms: vec![
             NewTerm {

@@ -72,15 +72,6 @@ pub enum Error {
         weight: f64,
         row: usize,
     },
-    #[error(
-        "{column}: the level {level:?} {what}, so its variance cannot be estimated: merge it with \
-         another level, leave its rows out, or fit without --variance"
-    )]
-    LevelVariance {
-        column: String,
-        level: String,
-        what: String,
-    },
     #[error("{name:?} has one value in all rows: it can explain nothing")]
     Constant { name: String },
     #[error("{what}: {problem}")]

@@ -15,6 +15,13 @@ const GROUPS: &str = "g,x,y\na,1,2.1\na,2,3.4\na,3,1.9\na,4,2.2\na,5,4.0\na,6,2.
     b,2,7.9\nb,3,3.2\nb,4,6.6\nb,5,9.4\nb,6,4.8\nb,7,5.5\nb,8,7.1\nb,9,2.9\nc,2,6.1\nc,4,6.6\n\
     c,5,6.2\nc,7,7.3\nc,8,7.0\n";
 
+/// Impacts on eight fruit.
+const FRUIT: &str = "variety,fruit,V,y\nGala,a,0.15,4.93\nGala,a,0.36,5.58\nGala,a,0.6,6.48\n\
+    Gala,b,0.24,3.84\nGala,b,0.56,6.34\nGala,c,0.23,2.61\nGala,c,0.35,4.02\nGala,c,0.64,6.18\n\
+    Gala,d,0.21,1.77\nGala,d,0.44,3.88\nGala,d,0.62,4.37\nFuji,e,0.22,4.05\nFuji,e,0.41,5.55\n\
+    Fuji,e,0.63,6.37\nFuji,f,0.2,4.64\nFuji,f,0.38,5.2\nFuji,g,0.19,3.42\nFuji,g,0.42,4.19\n\
+    Fuji,g,0.65,5.32\nFuji,h,0.2,3.66\nFuji,h,0.38,4.36\nFuji,h,0.57,5.54\n";
+
 fn json(table: &str, arguments: &[&str]) -> Value {
     on_table::json(table, &[&["regress", "t.csv"], arguments].concat())
 }
@@ -235,6 +242,95 @@ fn reference_three_variances_and_a_covariate() {
     all_close(&column(&found["anova"], "f"), &f, 1e-6);
 }
 
+/// nlme 3.1: `lme(y ~ V + variety, random = ~ 1 | fruit, weights = varIdent(form = ~ 1 | variety))`;
+/// degrees of freedom and Kenward and Roger's errors from the rows' covariance matrix
+/// (`bench/mixed_levels_reference.R`).
+#[test]
+fn reference_variances_by_level_beside_random_effects() {
+    let options = ["--formula", "y ~ V + variety + (1 | fruit)", "--variance"];
+    let options = [&options[..], &["variety"]].concat();
+    let found = json(FRUIT, &options);
+    let estimates = [2.885659962213886, 4.971099881471027, -0.292014243289222];
+    all_close(&column(&found["terms"], "estimate"), &estimates, 1e-7);
+    let errors = [0.442437238437414, 0.408519865651464, 0.609101794075712];
+    all_close(&column(&found["terms"], "se"), &errors, 1e-7);
+    let df = [6.06265851631078, 8.35844513933398, 5.64348331495878];
+    all_close(&column(&found["terms"], "df"), &df, 1e-5);
+    close(&found["log_likelihood"], -18.446852117155, 1e-10);
+    let sds = [0.816623357299883, 0.233545637974092, 0.589456734391988];
+    all_close(&column(&found["variances"], "value"), &sds, 1e-6);
+    let of = column(&found["variances"], "of");
+    assert_eq!(of, ["(Intercept)", "Fuji", "Gala"]);
+    let test = &found["level_variances"]["test"];
+    close(&test["statistic"], 4.13380227851896, 1e-6);
+    assert_eq!(test["df"], 1);
+    assert_eq!(found["level_variances"]["by"], "variety");
+    let rows = &found["level_variances"]["rows"];
+    assert_eq!(*rows, serde_json::json!([["Fuji", 11], ["Gala", 11]]));
+    let adjusted = [
+        &options[..],
+        &["--df", "kenward-roger", "--means", "variety"],
+    ]
+    .concat();
+    let adjusted = json(FRUIT, &adjusted);
+    let errors = [0.44703724896651, 0.442387854051788, 0.609274538086426];
+    all_close(&column(&adjusted["terms"], "se"), &errors, 1e-6);
+    let df = [6.66640918737592, 8.32873675772476, 6.08717248801947];
+    all_close(&column(&adjusted["terms"], "df"), &df, 1e-6);
+    // emmeans of the fit by nlme.
+    let means = json(FRUIT, &[&options[..], &["--means", "variety"]].concat());
+    let own = &means["means"][0]["means"];
+    all_close(&column(own, "mean"), &[4.840206, 4.548192], 1e-6);
+    all_close(&column(own, "se"), &[0.414562, 0.4462177], 1e-6);
+}
+
+/// A further impact on a fruit that was not struck scatters as its variety does.
+#[test]
+fn predicts_impacts_with_the_variance_of_their_level() {
+    let options = ["--formula", "y ~ V + variety + (1 | fruit)", "--variance"];
+    let options = [&options[..], &["variety"]].concat();
+    let found = json(FRUIT, &[&options[..], &["--predict", "t.csv"]].concat());
+    let width = |row: usize| {
+        let own = &found["predictions"][row];
+        own["high"].as_f64().unwrap() - own["low"].as_f64().unwrap()
+    };
+    // Fruit a and e at nearly the same velocity.
+    assert!(width(0) > 1.7 * width(11), "{} {}", width(0), width(11));
+    let one = json(FRUIT, &["--formula", options[1]]);
+    assert!(one["level_variances"].is_null());
+}
+
+#[test]
+fn says_what_is_wrong_with_variances_by_level_beside_random_effects() {
+    let options = ["--formula", "y ~ V + (1 | fruit)", "--variance"];
+    let with = |column: &'static str, more: &[&'static str]| {
+        let all = [&options[..], &[column], more].concat();
+        refused(FRUIT, &all)
+    };
+    let told = with("colour", &[]);
+    assert!(told.contains("colour"), "{told}");
+    for more in [
+        &["--robust"][..],
+        &["--select", "backward"],
+        &["--weights", "V"],
+    ] {
+        let told = with("variety", more);
+        assert!(
+            told.contains("--variance") || told.contains(more[0]),
+            "{told}"
+        );
+    }
+    // Each fruit has a slope of its own for two or three impacts.
+    let own = [
+        "--formula",
+        "y ~ fruit*V + (1 | variety)",
+        "--variance",
+        "fruit",
+    ];
+    let told = refused(FRUIT, &own);
+    assert!(told.contains("coefficients of its own"), "{told}");
+}
+
 /// With a mean for each level, a further observation of one of n rows lies within
 /// t s √(1 + 1/n) of its mean, t with n - 1 degrees of freedom (`qt(0.975, n - 1)` in R).
 #[test]
@@ -300,7 +396,6 @@ fn rejects_what_tells_no_weight_or_variance() {
     for other in [
         &["--robust"][..],
         &["--select", "backward"],
-        &["--random", "x"],
         &["--weights", "x"],
         &["--fold-by", "x"],
     ] {

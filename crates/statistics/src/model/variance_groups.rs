@@ -4,11 +4,12 @@ use crate::error::Error;
 use crate::model::linear_model::{LinearFit, coefficient, student_quantile};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
-use windfall_distribution::tail::{chi_squared_upper, chi_squared_upper_quantile};
+use windfall_distribution::tail::chi_squared_upper_quantile;
 use windfall_mixed::coefficient::{Coefficient, Estimated};
 use windfall_mixed::error::MixedError;
 use windfall_mixed::fit::MixedMethod;
 use windfall_mixed::inference::{FTest, VarianceUncertainty, contrast_df, f_test_of};
+use windfall_mixed::residual_levels::ResidualLevels;
 use windfall_mixed::weights::Weights;
 
 /// Steps of the search, and halvings of each.
@@ -24,19 +25,15 @@ const NO_FREEDOM: f64 = 1e-8;
 /// A level's standard deviation below this share of the residual one of all rows is rounding.
 const NO_SCATTER: f64 = 1e-9;
 
-/// Rows of a model, and the level that decides on the variance of each.
+/// Rows of a model, and the levels that decide on their variances.
 #[derive(Clone, Copy, Debug)]
 pub struct LevelledRows<'a> {
     /// Independent columns.
     pub x: &'a DMatrix<f64>,
     /// The response.
     pub y: &'a [f64],
-    /// Level of each row, from 0.
-    pub level: &'a [usize],
-    /// Names of the levels, each of which has rows.
-    pub names: &'a [String],
-    /// The column that holds them.
-    pub column: &'a str,
+    /// Level of each row.
+    pub levels: &'a ResidualLevels,
 }
 
 /// Residual variances by level, with what follows from their uncertainty.
@@ -56,17 +53,6 @@ pub struct VarianceGroups {
     covariance: DMatrix<f64>,
     /// Level of each row.
     level: Vec<usize>,
-}
-
-/// What a likelihood-ratio test says.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RatioTest {
-    /// Twice the rise of the log-likelihood.
-    pub statistic: f64,
-    /// Parameters more.
-    pub df: usize,
-    /// Probability of as much or more.
-    pub p: f64,
 }
 
 /// The model at some variances.
@@ -91,7 +77,7 @@ struct Evaluated {
 ///   with means of their own are the usual ones
 ///
 /// # Errors
-/// [`Error::LevelVariance`] for a level with one row, with coefficients of its own for all of
+/// [`MixedError::LevelVariance`] for a level with one row, with coefficients of its own for all of
 /// its rows, or without scatter about the model; [`MixedError::NoCriterion`] where the search
 /// finds no maximum.
 ///
@@ -103,12 +89,8 @@ struct Evaluated {
 /// Patterson and Thompson (1971), Biometrika 58, 545-554; Pinheiro and Bates (2000),
 /// Mixed-Effects Models in S and S-PLUS, §5.1 (`varIdent`), §5.2.
 pub fn variance_groups(rows: &LevelledRows, method: MixedMethod) -> Result<VarianceGroups, Error> {
-    let (count, width) = (rows.names.len(), rows.x.ncols());
-    let mut sizes = vec![0; count];
-    rows.level.iter().for_each(|own| sizes[*own] += 1);
-    if let Some(level) = sizes.iter().position(|own| *own < 2) {
-        return Err(refused(rows, level, "has one row"));
-    }
+    let (count, width) = (rows.levels.names.len(), rows.x.ncols());
+    rows.levels.check(rows.y.len())?;
     if rows.y.len() <= width {
         return Err(Error::TooFewRows {
             rows: rows.y.len(),
@@ -119,7 +101,7 @@ pub fn variance_groups(rows: &LevelledRows, method: MixedMethod) -> Result<Varia
     let equal = problem.at(&vec![0.0; count])?;
     if let Some(level) = equal.left.iter().position(|own| *own <= NO_FREEDOM) {
         let what = "has coefficients of its own for all of its rows";
-        return Err(refused(rows, level, what));
+        return Err(rows.levels.refused(level, what).into());
     }
     let total: f64 = equal.squares.iter().sum();
     let divisor = match method {
@@ -132,7 +114,11 @@ pub fn variance_groups(rows: &LevelledRows, method: MixedMethod) -> Result<Varia
     let start = equal.squares.iter().zip(&equal.left);
     let start: Vec<f64> = start.map(|(own, left)| (own / left).ln()).collect();
     let without = |logs: &[f64]| logs.iter().position(|own| *own < least || own.is_nan());
-    let no_scatter = |level: usize| refused(rows, level, "has no scatter about the model");
+    let no_scatter = |level: usize| {
+        rows.levels
+            .refused(level, "has no scatter about the model")
+            .into()
+    };
     if let Some(level) = without(&start) {
         return Err(no_scatter(level));
     }
@@ -145,21 +131,13 @@ pub fn variance_groups(rows: &LevelledRows, method: MixedMethod) -> Result<Varia
     let covariance = covariance.ok_or(Error::Mixed(MixedError::NoCriterion))?;
     Ok(VarianceGroups {
         variances: logs.iter().map(|own| own.exp()).collect(),
-        rows: sizes,
+        rows: rows.levels.sizes(),
         freedom: covariance.diagonal().iter().map(|own| 2.0 / own).collect(),
         log_likelihood: -0.5 * found.criterion,
         equal_log_likelihood: -0.5 * one.criterion,
         covariance,
-        level: rows.level.to_vec(),
+        level: rows.levels.level.clone(),
     })
-}
-
-fn refused(rows: &LevelledRows, level: usize, what: &str) -> Error {
-    Error::LevelVariance {
-        column: rows.column.to_owned(),
-        level: rows.names[level].clone(),
-        what: what.to_owned(),
-    }
 }
 
 /// A model with orthonormal columns.
@@ -186,7 +164,7 @@ impl<'a> Problem<'a> {
     /// * `logs`: logarithms of the variances
     fn at(&self, logs: &[f64]) -> Result<Evaluated, Error> {
         let (count, width) = (logs.len(), self.q.ncols());
-        let (level, y) = (self.rows.level, self.rows.y);
+        let (level, y) = (&self.rows.levels.level, self.rows.y);
         let weights: Vec<f64> = logs.iter().map(|own| (-own).exp()).collect();
         // Cross-products of each level over its variance.
         let mut shares = vec![DMatrix::zeros(width, width); count];
@@ -322,17 +300,6 @@ impl VarianceGroups {
         let end = |tail: f64| (variance * df / chi_squared_upper_quantile(tail, df)).sqrt();
         let tail = 0.5 * (1.0 - confidence);
         (end(tail), end(1.0 - tail))
-    }
-
-    /// Likelihood-ratio test against one variance for all rows.
-    pub fn test(&self) -> RatioTest {
-        let statistic = (2.0 * (self.log_likelihood - self.equal_log_likelihood)).max(0.0);
-        let df = self.variances.len() - 1;
-        RatioTest {
-            statistic,
-            df,
-            p: chi_squared_upper(statistic, df as f64),
-        }
     }
 
     /// What tests of a fit with these weights need.

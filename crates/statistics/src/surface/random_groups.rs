@@ -99,6 +99,7 @@ impl RandomGroups {
             group: vec![None; count],
         });
         let rows = NewRows {
+            level: Vec::new(),
             terms: terms.collect(),
             x: own,
         };

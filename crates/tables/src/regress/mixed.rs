@@ -9,18 +9,21 @@ use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::means::run::{Model, means_of};
 use crate::regress::mixed_figures::{MixedShown, mixed_paintings};
 pub use crate::regress::mixed_outcome::{
-    EffectOutcome, MixedOutcome, MixedPredictionOutcome, MixedTest, VarianceOutcome,
+    EffectOutcome, MixedLevelsOutcome, MixedOutcome, MixedPredictionOutcome, MixedTest,
+    VarianceOutcome,
 };
+use crate::regress::mixed_variances::{level_variances, variances};
 use crate::regress::outcome::{original_prediction, ranges_of};
 use crate::regress::request::{FreedomMethod, RegressRequest};
+use crate::regress::variances::run::{asked_levels, residual_levels};
 use windfall_draw::files::write_paintings;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_mixed::coefficient::Estimated;
-use windfall_mixed::constraint::VarianceParameter;
-use windfall_mixed::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_weighted};
+use windfall_mixed::fit::{MixedFit, MixedOptions, fit_mixed_weighted};
+use windfall_mixed::fit_levels::fit_mixed_levels;
 use windfall_mixed::inference::{
     FTest, VarianceUncertainty, coefficient_tests, estimate, f_test, picking_contrast,
     variance_uncertainty,
@@ -125,10 +128,7 @@ pub fn regress_mixed(
     Ok(MixedOutcome {
         formula: text.to_owned(),
         response,
-        method: match fit.method {
-            MixedMethod::Reml => "REML",
-            MixedMethod::MaximumLikelihood => "ML",
-        },
+        method: fit.method.name(),
         df_method: adjusted.map_or("Satterthwaite", |_| "Kenward-Roger"),
         count: row_count(&fitted.rows.frame, &data.table, &left_out),
         groups: fitted
@@ -137,6 +137,7 @@ pub fn regress_mixed(
             .map(|t| (t.term.name.clone(), t.term.groups))
             .collect(),
         weights: request.weights.clone(),
+        level_variances: level_variances(fit),
         terms,
         covariance: fit.covariance_rows(),
         ranges,
@@ -170,11 +171,6 @@ fn check(request: &RegressRequest) -> Result<(), Error> {
         let problem = "terms of mixed models are not selected here: compare models fitted by \
                        --likelihood ml by their criteria";
         return Err(unusable("--select", problem));
-    }
-    if request.variance.is_some() {
-        let problem = "variances by level are not estimated beside random effects: leave out one \
-                       of them, or model a transformed response such as its logarithm";
-        return Err(unusable("--variance", problem));
     }
     if request.robust {
         let problem = "there are no HC3 errors of mixed models: the random effects are what makes \
@@ -298,8 +294,14 @@ fn fit(
         Some(name) => column_weights(&data.table, name, 0..rows.y.len()).map_err(told)?,
         None => Weights::default(),
     };
-    let fit = fit_mixed_weighted((&rows.y, &weights), &x, &names, &numbers, &options)
-        .map_err(|error| told(StatisticsError::Mixed(error)))?;
+    let fit = match &request.variance {
+        None => fit_mixed_weighted((&rows.y, &weights), &x, &names, &numbers, &options),
+        Some(column) => {
+            let levels = residual_levels(column, data, 0..rows.y.len())?;
+            fit_mixed_levels((&rows.y, &levels), &x, &names, &numbers, &options)
+        }
+    };
+    let fit = fit.map_err(|error| told(StatisticsError::Mixed(error)))?;
     Ok(Fitted {
         rows,
         aliased,
@@ -369,53 +371,6 @@ fn term_tests(inference: &Inference) -> Result<Vec<MixedTest>, Error> {
     Ok(tests)
 }
 
-/// Variances with profile intervals.
-pub(crate) fn variances(
-    fit: &MixedFit,
-    profiles: &Profiles,
-) -> (Vec<VarianceOutcome>, Vec<FindingOutcome>) {
-    let shown = profiles.intervals.iter().map(|interval| {
-        let (group, kind, of, value) = match &interval.parameter {
-            VarianceParameter::Sd { term, column } => {
-                let own = &fit.variances[*term];
-                (
-                    own.term.clone(),
-                    "sd",
-                    own.columns[*column].clone(),
-                    own.sds[*column],
-                )
-            }
-            VarianceParameter::Correlation { term, columns } => {
-                let own = &fit.variances[*term];
-                let [first, second] = columns;
-                let of = format!("{}, {}", own.columns[*first], own.columns[*second]);
-                (
-                    own.term.clone(),
-                    "correlation",
-                    of,
-                    own.correlations[(*first, *second)],
-                )
-            }
-            VarianceParameter::ResidualSd => {
-                ("residual".to_owned(), "sd", String::new(), fit.residual_sd)
-            }
-        };
-        VarianceOutcome {
-            group,
-            kind,
-            of,
-            value,
-            low: interval.low,
-            high: interval.high,
-        }
-    });
-    let findings = profiles.findings.iter();
-    (
-        shown.collect(),
-        findings.map(|f| finding(f.code(), f.to_string())).collect(),
-    )
-}
-
 fn effects(fitted: &Fitted) -> Vec<EffectOutcome> {
     let mut found = Vec::new();
     for (framed, effects) in fitted.terms.iter().zip(&fitted.fit.effects) {
@@ -448,6 +403,10 @@ fn predictions(
     let rows = NewRows {
         x: x.select_columns(&fitted.columns),
         terms: new_terms(&fitted.terms, &asked.table).map_err(|error| asked.told(error))?,
+        level: match fitted.fit.model.levels() {
+            None => Vec::new(),
+            Some(levels) => asked_levels(levels, asked)?,
+        },
     };
     let found = predict_mixed(&fitted.fit, uncertainty, &rows, request.confidence);
     let found = found.map_err(mixed)?;

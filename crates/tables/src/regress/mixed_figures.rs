@@ -408,7 +408,7 @@ fn profile_panel(
             unit_of(own, &own.fit.variances[term].columns[column])
         }
         VarianceParameter::Correlation { .. } => String::new(),
-        VarianceParameter::ResidualSd => column_title(own.response).1,
+        VarianceParameter::ResidualSd { .. } => column_title(own.response).1,
     };
     let mut series = Vec::new();
     if points.iter().any(|(_, root)| root.is_finite()) {

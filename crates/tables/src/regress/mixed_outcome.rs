@@ -2,6 +2,7 @@
 
 use crate::regress::means::outcome::MeansOutcome;
 use crate::regress::outcome::{OriginalPrediction, RangeOutcome};
+use crate::regress::variances::outcome::VariancesTest;
 use crate::rows::RowCount;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
@@ -16,7 +17,7 @@ pub struct VarianceOutcome {
     pub group: String,
     /// "sd" or "correlation".
     pub kind: &'static str,
-    /// What varies between the groups.
+    /// What varies between the groups; the level of a residual one.
     pub of: String,
     /// Its value.
     pub value: f64,
@@ -55,6 +56,18 @@ pub struct MixedPredictionOutcome {
     pub original: Option<OriginalPrediction>,
 }
 
+/// Levels that have residual variances of their own; their standard deviations are among
+/// `variances`.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct MixedLevelsOutcome {
+    /// The category.
+    pub by: String,
+    /// Rows of each level.
+    pub rows: Vec<(String, usize)>,
+    /// Against one variance for all rows.
+    pub test: VariancesTest,
+}
+
 /// A fitted mixed model.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MixedOutcome {
@@ -73,6 +86,8 @@ pub struct MixedOutcome {
     pub groups: Vec<(String, usize)>,
     /// Column of the weights of rows.
     pub weights: Option<String>,
+    /// Levels that have residual variances of their own, where they have.
+    pub level_variances: Option<MixedLevelsOutcome>,
     /// Fixed effects.
     pub terms: Vec<Coefficient>,
     /// Covariance of the fixed effects, in the order of `terms`.

@@ -107,6 +107,15 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         text_of_rows(&outcome.anova, &TESTS, &[0]),
         text_of_rows(&outcome.variances, &VARIANCES, &[0, 1, 2])
     );
+    if let Some(own) = &outcome.level_variances {
+        text += &format!(
+            "against one residual standard deviation for all levels of {}: χ² {} on {}, p {}\n",
+            own.by,
+            number(own.test.statistic),
+            own.test.df,
+            probability(own.test.p),
+        );
+    }
     text += &format!(
         "R² of the fixed effects {}, with the random effects {}\nAIC {}, AICc {}, BIC {}, log-likelihood {}\n",
         plain(outcome.r2),

@@ -8,6 +8,7 @@ pub mod mixed;
 pub(crate) mod mixed_figures;
 pub mod mixed_outcome;
 pub mod mixed_text;
+pub(crate) mod mixed_variances;
 pub mod outcome;
 pub mod request;
 pub mod residuals;

@@ -2,8 +2,8 @@
 
 use crate::design::file::WHOLE_PLOT;
 use crate::regress::findings::finding;
-use crate::regress::mixed::variances;
 use crate::regress::mixed_figures::{MixedShown, mixed_paintings};
+use crate::regress::mixed_variances::variances;
 use crate::regress::run::random_text;
 use crate::surface::fitted::ResponseSurface;
 use crate::surface::outcome::{RandomOutcome, SurfaceModel};

@@ -4,11 +4,13 @@ use crate::regress::outcome::{PredictionOutcome, original_prediction};
 use crate::regress::request::RegressRequest;
 use crate::regress::variances::outcome::{LevelVarianceOutcome, VariancesOutcome, VariancesTest};
 use nalgebra::DMatrix;
+use windfall_distribution::tail::chi_squared_upper;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::Data;
 use windfall_mixed::coefficient::Estimated;
 use windfall_mixed::fit::MixedMethod;
+use windfall_mixed::residual_levels::ResidualLevels;
 use windfall_statistics::error::Error as StatisticsError;
 use windfall_statistics::model::anova::{AnovaRow, hypothesis};
 use windfall_statistics::model::linear_model::{
@@ -26,8 +28,7 @@ use windfall_statistics::model::variance_groups::{
 /// Estimated variances, and the levels that they are of.
 pub(crate) struct ByLevel {
     groups: VarianceGroups,
-    column: String,
-    names: Vec<String>,
+    levels: ResidualLevels,
     method: MixedMethod,
 }
 
@@ -76,13 +77,40 @@ pub(crate) fn weigh_levels(
         return Ok(None);
     };
     let told = |error: StatisticsError| data.told(error);
-    let cells = &data.table.column(column).map_err(told)?.cells;
+    let levels = residual_levels(column, data, rows.kept.iter())?;
+    let every: Vec<usize> = (0..rows.frame.names.len()).collect();
+    let estimated = rows.reduced().map_err(told)?.solve(&every).columns;
+    let x = columns(rows, &estimated).map_err(told)?;
+    let groups = variance_groups(
+        &LevelledRows {
+            x: &x,
+            y: &rows.y,
+            levels: &levels,
+        },
+        request.likelihood,
+    );
+    let groups = groups.map_err(told)?;
+    rows.weights = groups.weights();
+    Ok(Some(ByLevel {
+        groups,
+        levels,
+        method: request.likelihood,
+    }))
+}
+
+/// The level of each of some rows, and the names of those that have rows.
+///
+/// # Errors
+/// There is no such column, or it has one level.
+pub(crate) fn residual_levels(
+    column: &str,
+    data: &Data,
+    kept: impl Iterator<Item = usize>,
+) -> Result<ResidualLevels, Error> {
+    let cells = data.table.column(column);
+    let cells = &cells.map_err(|error| data.told(error))?.cells;
     let categories = cells.categories();
-    let codes: Vec<usize> = rows
-        .kept
-        .iter()
-        .filter_map(|row| categories.codes[row])
-        .collect();
+    let codes: Vec<usize> = kept.filter_map(|row| categories.codes[row]).collect();
     let mut known = codes.clone();
     known.sort_unstable();
     known.dedup();
@@ -91,32 +119,35 @@ pub(crate) fn weigh_levels(
         return Err(unusable("--variance", problem));
     }
     let place = |code: &usize| known.binary_search(code).unwrap_or_default();
-    let level: Vec<usize> = codes.iter().map(place).collect();
-    let names: Vec<String> = known
-        .iter()
-        .map(|own| categories.levels[*own].clone())
-        .collect();
-    let every: Vec<usize> = (0..rows.frame.names.len()).collect();
-    let estimated = rows.reduced().map_err(told)?.solve(&every).columns;
-    let x = columns(rows, &estimated).map_err(told)?;
-    let groups = variance_groups(
-        &LevelledRows {
-            x: &x,
-            y: &rows.y,
-            level: &level,
-            names: &names,
-            column,
-        },
-        request.likelihood,
-    );
-    let groups = groups.map_err(told)?;
-    rows.weights = groups.weights();
-    Ok(Some(ByLevel {
-        groups,
-        column: column.clone(),
-        names,
-        method: request.likelihood,
-    }))
+    let names = known.iter().map(|own| categories.levels[*own].clone());
+    Ok(ResidualLevels {
+        column: column.to_owned(),
+        names: names.collect(),
+        level: codes.iter().map(place).collect(),
+    })
+}
+
+/// The level of each row of a table to be predicted.
+///
+/// # Errors
+/// The table lacks the column of levels, or has others.
+pub(crate) fn asked_levels(levels: &ResidualLevels, asked: &Data) -> Result<Vec<usize>, Error> {
+    let told = |error| asked.told(error);
+    let cells = &asked.table.column(&levels.column).map_err(told)?.cells;
+    let categories = cells.categories();
+    let found = (0..asked.table.rows()).map(|row| {
+        let name = categories.codes[row].map_or("", |code| &categories.levels[code]);
+        let level = levels.names.iter().position(|own| own == name);
+        level.ok_or_else(|| {
+            told(StatisticsError::UnknownLevel {
+                column: levels.column.clone(),
+                level: name.to_owned(),
+                row: row + 1,
+                known: levels.names.join(", "),
+            })
+        })
+    });
+    found.collect()
 }
 
 /// Some columns of a model matrix.
@@ -158,19 +189,14 @@ impl ByLevel {
         }
         let (f, p, model_df) = self.whole(rows, fit, &own);
         (model.f, model.p) = (f, p);
-        let test = self.groups.test();
         Ok(VariancesOutcome {
-            by: self.column.clone(),
-            method: match self.method {
-                MixedMethod::Reml => "REML",
-                MixedMethod::MaximumLikelihood => "ML",
-            },
+            by: self.levels.column.clone(),
+            method: self.method.name(),
             levels: self.levels(request.confidence),
-            test: VariancesTest {
-                statistic: test.statistic,
-                df: test.df,
-                p: test.p,
-            },
+            test: variances_test(
+                self.groups.log_likelihood - self.groups.equal_log_likelihood,
+                self.groups.variances.len(),
+            ),
             anova_df,
             model_df,
         })
@@ -201,7 +227,7 @@ impl ByLevel {
     }
 
     fn levels(&self, confidence: f64) -> Vec<LevelVarianceOutcome> {
-        let levels = self.names.iter().enumerate();
+        let levels = self.levels.names.iter().enumerate();
         let shown = levels.map(|(place, name)| {
             let (low, high) = self.groups.interval(place, confidence);
             LevelVarianceOutcome {
@@ -229,25 +255,14 @@ impl ByLevel {
     ) -> Result<Vec<PredictionOutcome>, Error> {
         let told = |error| asked.told(error);
         let x = prediction_rows(&rows.frame, &asked.table).map_err(told)?;
-        let cells = &asked.table.column(&self.column).map_err(told)?.cells;
-        let categories = cells.categories();
-        let lines = asked.lines.iter().enumerate();
-        let shown = lines.map(|(row, line)| {
-            let name = categories.codes[row].map_or("", |code| &categories.levels[code]);
-            let level = self.names.iter().position(|own| own == name);
-            let level = level.ok_or_else(|| {
-                told(StatisticsError::UnknownLevel {
-                    column: self.column.clone(),
-                    level: name.to_owned(),
-                    row: row + 1,
-                    known: self.names.join(", "),
-                })
-            })?;
+        let levels = asked_levels(&self.levels, asked)?;
+        let lines = asked.lines.iter().zip(levels).enumerate();
+        let shown = lines.map(|(row, (line, level))| {
             let weights: Vec<f64> = x.row(row).iter().copied().collect();
             let own = (level, self.groups.variances[level]);
             let mean = inference.estimate(&weights);
             let prediction = predicted(&mean, &inference.observation(&weights, own), confidence);
-            Ok(PredictionOutcome {
+            PredictionOutcome {
                 line,
                 original: original_prediction(
                     scale,
@@ -256,9 +271,21 @@ impl ByLevel {
                     (prediction.low, prediction.high),
                 ),
                 prediction,
-            })
+            }
         });
-        shown.collect()
+        Ok(shown.collect())
+    }
+}
+
+/// Likelihood-ratio test of variances by level against one for all rows.
+///
+/// * `rise`: of the log-likelihood
+pub(crate) fn variances_test(rise: f64, levels: usize) -> VariancesTest {
+    let (statistic, df) = ((2.0 * rise).max(0.0), levels - 1);
+    VariancesTest {
+        statistic,
+        df,
+        p: chi_squared_upper(statistic, df as f64),
     }
 }
 
