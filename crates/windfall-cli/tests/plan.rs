@@ -417,6 +417,37 @@ fn closed_form_precision_of_a_surface() {
     close(&found["rows"][0]["half_width"], 1.70407763676, 1e-9);
 }
 
+/// Orthogonal blocks leave the leverage of the centre as it is, and take a degree of freedom.
+#[test]
+fn closed_form_precision_of_a_surface_in_blocks() {
+    let mut design = "block,A,B\n".to_owned();
+    for (x, y) in [(1, 1), (1, -1), (-1, 1), (-1, -1), (0, 0), (0, 0)] {
+        design += &format!("1,{x},{y}\n");
+    }
+    let a = 2f64.sqrt();
+    for (x, y) in [
+        (a, 0.0),
+        (-a, 0.0),
+        (0.0, a),
+        (0.0, -a),
+        (0.0, 0.0),
+        (0.0, 0.0),
+    ] {
+        design += &format!("2,{x},{y}\n");
+    }
+    let line = "surface t.csv --factor A --factor B --range A=-1..1 --range B=-1..1 --sd 2 --fruit 1 \
+                --coefficients 'A^2=-1,B^2=-1'";
+    let found = json(&design, line);
+    assert_eq!(found["rows"][0]["df"], 5.0);
+    // t(0.975, 5) · 2 √(1/4) · c4(5), R 4.2.2
+    close(&found["rows"][0]["half_width"], 2.4459930909349, 1e-9);
+    assert_eq!(found["findings"][0]["code"], "blocks");
+    let without = json(&design.replace("block", "round"), line);
+    assert_eq!(without["rows"][0]["df"], 6.0);
+    let plots = json(&design.replace("block", "whole_plot"), line);
+    assert_eq!(plots["findings"][0]["code"], "whole-plots-left-out");
+}
+
 #[test]
 fn rejects_what_cannot_be_planned() {
     for (line, said) in [

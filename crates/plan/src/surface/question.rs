@@ -17,7 +17,7 @@ use windfall_statistics::surface::canonical::{Shape, canonical};
 pub(crate) struct SurfaceQuestion {
     /// True surface.
     pub surface: Surface,
-    /// Model matrix of one fruit at each run, coded.
+    /// Model matrix of one fruit at each run, coded; contrasts of blocks last.
     pub x: DMatrix<f64>,
     /// (X'X)⁻¹.
     pub inverse: DMatrix<f64>,
@@ -55,7 +55,9 @@ impl SurfaceQuestion {
         for _ in 0..self.simulation.simulations {
             let drawn = DVector::from_fn(self.x.ncols(), |_, _| normal(&mut source));
             let error = root.l() * drawn * scale;
-            for (place, error) in error.iter().enumerate() {
+            // the blocks' means come last and move no optimum
+            let own = self.surface.coded.len();
+            for (place, error) in error.iter().take(own).enumerate() {
                 surface.coded[place] = self.surface.coded[place] + error;
             }
             match canonical(&surface).filter(|own| own.shape == shape) {

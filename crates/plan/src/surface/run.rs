@@ -16,14 +16,18 @@ use windfall_files::table::data::Data;
 use windfall_files::text::number::plain;
 use windfall_files::text::statistic::number;
 use windfall_statistics::model::model_rows::rows_with_all;
-use windfall_statistics::surface::analysis::{Surface, fit_surface};
+use windfall_statistics::surface::analysis::{Surface, block_rows, fit_surface_in_blocks};
 use windfall_statistics::surface::canonical::{Canonical, Shape, canonical};
 use windfall_statistics::surface::coding::CodedFactors;
 use windfall_statistics::surface::terms::{
     SurfaceTerms, monomial_name, monomial_value, surface_terms,
 };
+use windfall_statistics::table::Categories;
 use windfall_tables::design::coding::number_factors;
+use windfall_tables::surface::blocks::{block_column, blocks_of};
 use windfall_tables::surface::factors::coded_factors;
+use windfall_tables::surface::random::plots;
+use windfall_tables::surface::request::SurfaceRequest;
 
 /// Plans how well the optimum of a response surface is known: the response there, and where it
 /// lies.
@@ -36,11 +40,17 @@ pub fn plan_surface(request: &SurfacePlanRequest) -> Result<PlanOutcome, Error> 
         let problem = "an optimum has intervals and no test: give --half-width, or --fruit";
         return Err(unusable("--power", problem));
     }
-    let (data, coded, names) = read_runs(request)?;
+    let Runs {
+        data,
+        coded,
+        names,
+        blocks,
+        findings: mut found,
+    } = read_runs(request)?;
     let terms = surface_terms(&request.model, &names).map_err(Error::Statistics)?;
-    let surface = true_surface(request, &data, &coded, &terms)?;
+    let surface = true_surface(request, &data, (&coded, blocks.as_ref()), &terms)?;
     let scatter = scatter_of(request, &surface)?;
-    let x = model_matrix(&coded, &terms);
+    let x = model_matrix(&coded, &terms, blocks.as_ref());
     let Some(inverse) = x.tr_mul(&x).cholesky().map(|root| root.inverse()) else {
         let problem = "the runs of the design cannot tell all of these terms apart: take a \
                        simpler model, or a design made for this one (`windfall design`)";
@@ -50,24 +60,38 @@ pub fn plan_surface(request: &SurfacePlanRequest) -> Result<PlanOutcome, Error> 
     let (at, findings) = place(&coded, optimum.as_ref());
     // told is the centre, where there is no optimum among the runs
     let optimum = optimum.filter(|_| findings.is_empty());
+    found.extend(findings);
+    // the mean of the blocks
+    let wanted = terms_at(&terms, &at).resize_vertically(x.ncols(), 0.0);
     let question = SurfaceQuestion {
         about: about(request, &coded, &at, optimum.as_ref(), &scatter, &surface),
-        at: terms_at(&terms, &at),
+        at: wanted,
         shape: optimum.map(|own| own.shape),
         surface,
         x,
         inverse,
         scatter,
         simulation: request.simulation,
-        findings,
+        findings: found,
     };
     on_threads(request.simulation.threads, || {
         plan(&question, &request.plan)
     })
 }
 
-/// The runs with the coded values of their factors, and the factors' names.
-fn read_runs(request: &SurfacePlanRequest) -> Result<(Data, CodedFactors, Vec<String>), Error> {
+/// The runs of a design.
+struct Runs {
+    data: Data,
+    /// Factors in coded units.
+    coded: CodedFactors,
+    names: Vec<String>,
+    /// The block of each run.
+    blocks: Option<Categories>,
+    findings: Vec<FindingOutcome>,
+}
+
+/// Reads the runs, as `windfall surface` will.
+fn read_runs(request: &SurfacePlanRequest) -> Result<Runs, Error> {
     let mut data = request.reading.read(&request.table)?;
     let names = match request.factors.is_empty() {
         true => number_factors(&data),
@@ -78,8 +102,14 @@ fn read_runs(request: &SurfacePlanRequest) -> Result<(Data, CodedFactors, Vec<St
             "give the factors, in the order of the letters A, B, C …: --factor k --factor e";
         return Err(unusable("--factor", problem));
     }
+    let asked = SurfaceRequest::usual(
+        request.table.clone(),
+        request.response.iter().cloned().collect(),
+        vec![request.model.clone()],
+    );
+    let block = block_column(&asked, &names, &data)?;
     let mut needed = names.clone();
-    needed.extend(request.response.clone());
+    needed.extend(request.response.iter().chain(&block).cloned());
     let (kept, _) = rows_with_all(&data.table, &needed).map_err(|error| data.told(error))?;
     if kept.is_empty() {
         let problem = format!(
@@ -90,22 +120,46 @@ fn read_runs(request: &SurfacePlanRequest) -> Result<(Data, CodedFactors, Vec<St
         return Err(unusable("TABLE", problem));
     }
     data.keep(&kept);
-    let coded = coded_factors(&data, &names, &request.ranges)?;
-    Ok((data, coded, names))
+    let blocks = block.as_ref().map(|name| blocks_of(name, &data));
+    let blocks = blocks.transpose()?;
+    let mut findings: Vec<FindingOutcome> = Vec::new();
+    if let (Some(name), Some(blocks)) = (&block, &blocks) {
+        let message = format!(
+            "runs are compared within the {} blocks of the column {name}, as `windfall surface` \
+             will do",
+            blocks.levels.len()
+        );
+        findings.push(FindingOutcome::new("blocks", message));
+    }
+    if let Some(plots) = plots(&asked, &names, &data).first() {
+        let message = format!(
+            "the column {plots} says that runs are made in whole plots, and the plan takes them \
+             for independent: what depends on factors that are set once for each plot will be \
+             known less well than this says"
+        );
+        findings.push(FindingOutcome::new("whole-plots-left-out", message));
+    }
+    Ok(Runs {
+        coded: coded_factors(&data, &names, &request.ranges)?,
+        data,
+        names,
+        blocks,
+        findings,
+    })
 }
 
 /// The surface of an earlier response, or the one that is stated.
 fn true_surface(
     request: &SurfacePlanRequest,
     data: &Data,
-    coded: &CodedFactors,
+    (coded, blocks): (&CodedFactors, Option<&Categories>),
     terms: &SurfaceTerms,
 ) -> Result<Surface, Error> {
     let fitted = |y: &[f64]| {
-        let fitted = fit_surface(
+        let fitted = fit_surface_in_blocks(
             &coded.factors,
             terms,
-            &coded.values,
+            (&coded.values, blocks),
             y,
             request.plan.confidence,
         );
@@ -121,7 +175,7 @@ fn true_surface(
         }
         (None, Some(text)) => {
             let own = stated(text, coded, terms)?;
-            let y = model_matrix(coded, terms) * &own;
+            let y = model_matrix(coded, terms, None) * &own;
             // exactly as stated, without the rounding of a fit
             let coded = own.iter().copied().collect();
             Ok(Surface {
@@ -200,7 +254,12 @@ fn scatter_of(request: &SurfacePlanRequest, surface: &Surface) -> Result<KnownSc
     })
 }
 
-fn model_matrix(coded: &CodedFactors, terms: &SurfaceTerms) -> DMatrix<f64> {
+/// The terms of the model, then contrasts of the blocks against their mean.
+fn model_matrix(
+    coded: &CodedFactors,
+    terms: &SurfaceTerms,
+    blocks: Option<&Categories>,
+) -> DMatrix<f64> {
     let runs = coded.values.first().map_or(0, Vec::len);
     let rows: Vec<DVector<f64>> = (0..runs)
         .map(|run| {
@@ -208,7 +267,13 @@ fn model_matrix(coded: &CodedFactors, terms: &SurfaceTerms) -> DMatrix<f64> {
             terms_at(terms, &point)
         })
         .collect();
-    DMatrix::from_fn(runs, terms.monomials.len() + 1, |run, term| rows[run][term])
+    let (own, blocks) = (terms.monomials.len() + 1, block_rows(blocks, runs));
+    DMatrix::from_fn(runs, own + blocks.ncols(), |run, column| {
+        match column.checked_sub(own) {
+            None => rows[run][column],
+            Some(block) => blocks[(run, block)],
+        }
+    })
 }
 
 fn terms_at(terms: &SurfaceTerms, point: &[f64]) -> DVector<f64> {

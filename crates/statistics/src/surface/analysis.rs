@@ -118,7 +118,7 @@ fn coded_terms(columns: &[usize], estimates: impl Iterator<Item = f64>, count: u
 }
 
 /// Contrasts of the blocks against their mean, a row for each run.
-fn block_rows(blocks: Option<&Categories>, runs: usize) -> DMatrix<f64> {
+pub fn block_rows(blocks: Option<&Categories>, runs: usize) -> DMatrix<f64> {
     let Some(blocks) = blocks else {
         return DMatrix::zeros(runs, 0);
     };

@@ -20,7 +20,7 @@ const NONE: &str = "none";
 ///
 /// # Errors
 /// It is not there, or holds a factor.
-pub(crate) fn block_column(
+pub fn block_column(
     request: &SurfaceRequest,
     factors: &[String],
     data: &Data,
@@ -51,7 +51,7 @@ pub(crate) fn block_column(
 ///
 /// # Errors
 /// All runs are in one block, or each is in a block of its own.
-pub(crate) fn blocks_of(name: &str, data: &Data) -> Result<Categories, Error> {
+pub fn blocks_of(name: &str, data: &Data) -> Result<Categories, Error> {
     let column = data.table.column(name).map_err(|error| data.told(error))?;
     let found = column.cells.categories();
     let wrong = |problem: String| Err(unusable(format!("--block {name}"), problem));

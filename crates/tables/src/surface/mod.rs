@@ -1,6 +1,6 @@
 //! `windfall surface`: response surfaces and their optima.
 
-mod blocks;
+pub mod blocks;
 pub mod factors;
 pub mod figure_contour;
 pub mod figure_effects;
@@ -12,7 +12,7 @@ pub mod fitted;
 pub mod goal;
 mod model_outcome;
 pub mod outcome;
-mod random;
+pub mod random;
 pub mod request;
 pub mod run;
 mod settings;

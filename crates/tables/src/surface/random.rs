@@ -78,7 +78,7 @@ pub(crate) fn random_parts(
 }
 
 /// The whole plots of a table, where its column tells several of several runs.
-fn plots(request: &SurfaceRequest, factors: &[String], data: &Data) -> Vec<String> {
+pub fn plots(request: &SurfaceRequest, factors: &[String], data: &Data) -> Vec<String> {
     let name = WHOLE_PLOT.to_owned();
     let used = factors.contains(&name)
         || request.responses.contains(&name)
