@@ -93,14 +93,22 @@ pub(crate) struct Estimate {
 }
 
 /// Minimises the criterion, smooth at zero variances as entries may have any sign.
-pub(crate) fn estimate(model: &MixedModel, criterion: &Criterion) -> Option<(Estimate, State)> {
+///
+/// * `sizes`: of the effects, over σ, at which the search begins; the others where the first
+///   ends on the edge
+pub(crate) fn estimate(
+    model: &MixedModel,
+    criterion: &Criterion,
+    sizes: &[f64],
+) -> Option<(Estimate, State)> {
     let entries = entries_of(model);
-    let first = from_start(model, criterion, &entries, 1.0)?;
+    let (first, others) = sizes.split_first()?;
+    let first = from_start(model, criterion, &entries, *first)?;
     let mut best = to_edge(model, criterion, &entries, first);
     if !best.at_zero.is_empty() || !best.converged {
         // a second basin, where there is one, is found from other starts
-        for size in [0.2, 5.0] {
-            if let Some(other) = from_start(model, criterion, &entries, size) {
+        for size in others {
+            if let Some(other) = from_start(model, criterion, &entries, *size) {
                 let other = to_edge(model, criterion, &entries, other);
                 let evaluations = best.evaluations + other.evaluations;
                 let lower = other.value < best.value - allowance(best.value);

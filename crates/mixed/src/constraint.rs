@@ -248,7 +248,9 @@ impl<'a> Constrained<'a> {
 
     fn point(&self, value: f64, free: &[f64]) -> Point {
         let log_sigma = match self.parameter {
-            VarianceParameter::ResidualSd { level: 0 } => value.max(f64::MIN_POSITIVE).ln(),
+            VarianceParameter::ResidualSd { level: 0 } => {
+                value.max(f64::MIN_POSITIVE).ln() - 0.5 * self.fit.level_ratios()[0].ln()
+            }
             _ => free[0],
         };
         let (others, held_values) = free[1..].split_at(self.others.len());

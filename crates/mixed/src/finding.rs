@@ -29,6 +29,22 @@ pub enum MixedFinding {
         parameter: String,
         side: &'static str,
     },
+    #[error(
+        "the likelihood is higher by {rise:.3} where the level {level} does not scatter about the \
+         model at all; shown is the highest maximum at which every level does: the rows hardly \
+         tell the variance of that level"
+    )]
+    HigherWithoutScatter { level: String, rise: f64 },
+    #[error(
+        "the likelihood has another maximum, whose logarithm is lower by {below:.3}: the rows are \
+         few for so many variances, and what they say is less sure than errors and intervals tell"
+    )]
+    SeveralMaxima { below: f64 },
+    #[error(
+        "the likelihood is higher by {rise:.3} at another value of {parameter}: what is shown is \
+         not its highest maximum; try a simpler random part or fewer levels"
+    )]
+    HigherElsewhere { parameter: String, rise: f64 },
 }
 
 impl MixedFinding {
@@ -39,6 +55,9 @@ impl MixedFinding {
             Self::NoConvergence { .. } => "no_convergence",
             Self::FlatCriterion { .. } => "flat_criterion",
             Self::ProfileOpen { .. } => "profile_open",
+            Self::HigherWithoutScatter { .. } => "higher_without_scatter",
+            Self::SeveralMaxima { .. } => "several_maxima",
+            Self::HigherElsewhere { .. } => "higher_elsewhere",
         }
     }
 }

@@ -69,7 +69,7 @@ pub struct MixedFit {
     pub coefficients: Vec<f64>,
     /// Their covariance σ² (X'V⁻¹X)⁻¹, variances taken as known.
     pub covariance: DMatrix<f64>,
-    /// Residual standard deviation σ; of the first level where levels differ.
+    /// Residual standard deviation σ of a row of weight 1.
     pub residual_sd: f64,
     /// Residual variances of levels, where they differ.
     pub levels: Option<LevelVariances>,
@@ -172,8 +172,17 @@ pub fn fit_mixed_weighted(
 
 /// Fits a prepared model, or returns [`MixedError::NoCriterion`].
 pub fn fit_mixed_model(model: MixedModel, options: &MixedOptions) -> Result<MixedFit, MixedError> {
+    fit_from(model, options, &[1.0, 0.2, 5.0])
+}
+
+/// [`fit_mixed_model`] with effects of these sizes, over σ, at first.
+pub(crate) fn fit_from(
+    model: MixedModel,
+    options: &MixedOptions,
+    sizes: &[f64],
+) -> Result<MixedFit, MixedError> {
     let criterion = Criterion::of_model(&model, options.method == MixedMethod::Reml);
-    let (estimate, state) = estimate(&model, &criterion).ok_or(MixedError::NoCriterion)?;
+    let (estimate, state) = estimate(&model, &criterion, sizes).ok_or(MixedError::NoCriterion)?;
     let moved = match model.at_levels(&estimate.logs) {
         Cow::Owned(moved) => Some(moved),
         Cow::Borrowed(_) => None,

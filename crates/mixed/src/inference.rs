@@ -1,13 +1,12 @@
 //! Tests of fixed effects with Satterthwaite's degrees of freedom.
 
-use crate::boundary::Criterion;
 use crate::coefficient::{Coefficient, Estimated};
 use crate::error::MixedError;
 use crate::evaluate::State;
 use crate::finding::MixedFinding;
 use crate::fit::{MixedFit, MixedMethod};
 use crate::levels::level_slopes;
-use crate::minimise::{FLAT, differences, directions};
+use crate::minimise::{FLAT, LEAST_SIZE, differences, directions};
 use crate::model::MixedModel;
 use crate::slope::slopes;
 use crate::term::{check_finite, check_length};
@@ -22,7 +21,7 @@ const RANK: f64 = 1e-10;
 /// depends on them: all that Satterthwaite's method needs of a fit.
 ///
 /// The parameters are the free entries of the relative covariance factors, logarithms of the
-/// ratios of the levels' residual variances, then σ.
+/// ratios of the levels' residual variances, then log σ.
 #[derive(Clone, Debug)]
 pub struct VarianceUncertainty {
     /// Covariance of the parameters, without flat directions.
@@ -93,25 +92,25 @@ pub fn variance_uncertainty(fit: &MixedFit) -> Result<VarianceUncertainty, Mixed
             second[(i, j)] = f64::midpoint(rows[i][j], rows[j][i]);
         }
     }
-    // deviance = logs + denominator log(2πσ²) + squares / σ²
-    let criterion = Criterion::of_model(&fit.model, fit.method == MixedMethod::Reml);
+    // deviance = logs + denominator log(2πσ²) + squares / σ², by log σ
     let squares_slope = squares_slope(fit).ok_or(MixedError::NoCriterion)?;
     for i in 0..k {
-        second[(i, k)] = -2.0 * squares_slope[i] / sigma.powi(3);
+        second[(i, k)] = -2.0 * squares_slope[i] / sigma.powi(2);
         second[(k, i)] = second[(i, k)];
     }
-    second[(k, k)] =
-        -2.0 * criterion.denominator / sigma.powi(2) + 6.0 * fit.state.squares / sigma.powi(4);
+    second[(k, k)] = 4.0 * fit.state.squares / sigma.powi(2);
 
     let mut slopes: Vec<DMatrix<f64>> = rows
         .iter()
         .map(|row| DMatrix::from_column_slice(p, p, &row[k..]) * (sigma * sigma))
         .collect();
-    slopes.push(&fit.covariance * (2.0 / sigma));
+    slopes.push(&fit.covariance * 2.0);
     if second.iter().any(|value| !value.is_finite()) {
         return Err(MixedError::NoCriterion);
     }
-    let (covariance, flat) = covariance_from(second);
+    let mut sizes: Vec<f64> = here.iter().map(|own| own.abs().max(LEAST_SIZE)).collect();
+    sizes.push(1.0);
+    let (covariance, flat) = covariance_from(second, &sizes);
     let mut findings = Vec::new();
     if flat > 0 {
         findings.push(MixedFinding::FlatCriterion { directions: flat });
@@ -158,8 +157,11 @@ fn covariance_of(fit: &MixedFit, state: &State) -> DMatrix<f64> {
 
 /// Twice the inverse of a second derivative over its curved directions, after scaling to
 /// a unit diagonal, and the number of flat ones.
-fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
+///
+/// * `sizes`: of the coordinates; what is flat does not depend on their units
+fn covariance_from(second: DMatrix<f64>, sizes: &[f64]) -> (DMatrix<f64>, usize) {
     let n = second.nrows();
+    let second = DMatrix::from_fn(n, n, |i, j| second[(i, j)] * sizes[i] * sizes[j]);
     let largest = second.diagonal().amax();
     let scale = DVector::from_fn(n, |i, _| {
         let diagonal = second[(i, i)];
@@ -180,7 +182,8 @@ fn covariance_from(second: DMatrix<f64>) -> (DMatrix<f64>, usize) {
             flat += 1;
         }
     }
-    let covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
+    let scale = |i: usize| scale[i] * sizes[i];
+    let covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale(i) * scale(j));
     (covariance, flat)
 }
 
@@ -282,12 +285,46 @@ pub(crate) fn test_of(
 /// # Source
 /// lmerTest's `contestMD` (Kuznetsova et al. 2017, sec. 2.1): the contrast is turned
 /// into independent ones, whose degrees of freedom are joined by the mean of F.
+///
+/// Where residual variances differ by level, the contrast is turned first as
+/// [`independent_sums`] says, so that degrees of freedom do not depend on the coding.
 pub fn f_test(
     fit: &MixedFit,
     uncertainty: &VarianceUncertainty,
     contrast: &DMatrix<f64>,
 ) -> Result<FTest, MixedError> {
-    f_test_of((&fit.coefficients, &fit.covariance), uncertainty, contrast)
+    let own = (&fit.coefficients[..], &fit.covariance);
+    if fit.model.levels.is_none() {
+        return f_test_of(own, uncertainty, contrast);
+    }
+    check_length(
+        "columns of the contrast",
+        contrast.ncols(),
+        fit.coefficients.len(),
+    )?;
+    check_contrast(contrast)?;
+    let x = fit.model.weights.unweigh_columns(&fit.model.x);
+    let ordinary = x.tr_mul(&x).try_inverse();
+    let ordinary = ordinary.ok_or(MixedError::EmptyContrast)?;
+    let turned = independent_sums(contrast, &ordinary).ok_or(MixedError::EmptyContrast)?;
+    f_test_of(own, uncertainty, &turned)
+}
+
+/// Sums of coefficients that one variance for all rows would make independent and equally sure,
+/// in place of sums of the same span; `None` where all are zero.
+///
+/// Fai and Cornelius' degrees of freedom depend on which sums stand for all that follow from
+/// them: of these, the same question has the same answer however it is coded.
+///
+/// * `ordinary`: (X'X)⁻¹
+pub fn independent_sums(sums: &DMatrix<f64>, ordinary: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let eigen = (sums * ordinary * sums.transpose()).symmetric_eigen();
+    let least = RANK * eigen.eigenvalues.amax();
+    let rows = directions(&eigen).filter(|(value, _)| **value > least);
+    let rows: Vec<_> = rows
+        .map(|(value, vector)| vector.transpose() * sums / value.sqrt())
+        .collect();
+    (!rows.is_empty()).then(|| DMatrix::from_rows(&rows))
 }
 
 /// [`f_test`] of estimates with their covariance; errors as there.

@@ -1,6 +1,6 @@
 //! Residual variances that differ by the level of a category.
 //!
-//! A row of level l has the residual variance σ² exp(δₗ), with δ = 0 for the first level. Rows
+//! A row of level l has the residual variance σ² exp(δₗ), where δ of the first level is held. Rows
 //! enter the model times exp(-δ/2), so that with sums over the rows of a level, e a row's
 //! conditional residual, z its random columns, K = Λ(Λ'Z'ZΛ + I)⁻¹Λ' and d = x - X'V⁻¹ZΛΛ'z:
 //!
@@ -13,10 +13,12 @@
 use crate::basis::dot;
 use crate::blocks::{fixed_square, leaf_of, trunk_of};
 use crate::effects::scaled_effects;
-use crate::evaluate::State;
+use crate::evaluate::{State, evaluate};
+use crate::fit::{MixedFit, MixedMethod};
 use crate::model::MixedModel;
+use crate::residual_levels::ResidualLevels;
 use crate::row::{Row, RowWork};
-use crate::slope::Projections;
+use crate::slope::{Projections, slopes};
 use crate::weights::Weights;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -38,9 +40,12 @@ impl MixedModel {
         if logs.iter().all(|own| *own == 0.0) {
             return Cow::Borrowed(self);
         }
-        let of_level = |level: usize| if level == 0 { 0.0 } else { logs[level - 1] };
-        let of_level: Vec<f64> = (0..levels.names.len()).map(of_level).collect();
-        let of_level: Vec<f64> = of_level.iter().map(|log| (-0.5 * log).exp()).collect();
+        Cow::Owned(self.with_levels(levels, &[&[0.0], logs].concat()))
+    }
+
+    /// The model with the residual variance of every level times exp(logs).
+    fn with_levels(&self, levels: &ResidualLevels, logs: &[f64]) -> Self {
+        let of_level: Vec<f64> = logs.iter().map(|log| (-0.5 * log).exp()).collect();
         let roots: Vec<f64> = levels.level.iter().map(|own| of_level[*own]).collect();
         let scale = |values: &mut [f64]| {
             let pairs = values.iter_mut().zip(&roots);
@@ -68,7 +73,7 @@ impl MixedModel {
         model.trunk = trunk_of(&model.factors, &fixed);
         model.leaf = leaf_of(&model.factors, &model.trunk, &fixed);
         model.fixed = fixed_square(&fixed);
-        Cow::Owned(model)
+        model
     }
 }
 
@@ -88,15 +93,18 @@ pub(crate) struct LevelSlopes {
 impl LevelSlopes {
     /// Derivative, at fixed σ², of -2 log likelihood by the free levels.
     pub(crate) fn deviance(&self, restricted: bool, variance: f64) -> Vec<f64> {
-        let of = |level: usize| {
-            let fixed = if restricted {
-                self.log_fixed[level]
-            } else {
-                0.0
-            };
-            self.sizes[level] + self.log_v[level] + fixed + self.squares[level] / variance
+        let levels = 1..self.sizes.len();
+        let of = |level| self.deviance_by(level, restricted, variance);
+        levels.map(of).collect()
+    }
+
+    /// The same by one level.
+    fn deviance_by(&self, level: usize, restricted: bool, variance: f64) -> f64 {
+        let fixed = match restricted {
+            true => self.log_fixed[level],
+            false => 0.0,
         };
-        (1..self.sizes.len()).map(of).collect()
+        self.sizes[level] + self.log_v[level] + fixed + self.squares[level] / variance
     }
 }
 
@@ -140,6 +148,31 @@ pub(crate) fn level_slopes(
         log_fixed: part(1),
         squares: part(2),
     })
+}
+
+/// Second derivative of -2 log likelihood by the logarithm of each level's residual variance,
+/// all else held: of independent rows, their degrees of freedom. It vanishes where the level's
+/// variance may as well be zero. NaN where numbers overflow.
+pub(crate) fn level_curvatures(fit: &MixedFit) -> Vec<f64> {
+    /// Step of the differences.
+    const STEP: f64 = 0.05;
+    let Some(levels) = &fit.model.levels else {
+        return Vec::new();
+    };
+    let count = levels.names.len();
+    let slope = |level: usize, by: f64| {
+        let mut logs = vec![0.0; count];
+        logs[level] = by;
+        let model = fit.model.with_levels(levels, &logs);
+        let state = evaluate(&model, &fit.state.blocks)?;
+        let (_, projections) = slopes(&model, &state);
+        let own = level_slopes(&model, &state, &projections)?;
+        let restricted = fit.method == MixedMethod::Reml;
+        Some(own.deviance_by(level, restricted, fit.residual_sd.powi(2)))
+    };
+    let of = |level| Some((slope(level, STEP)? - slope(level, -STEP)?) / (2.0 * STEP));
+    let found = (0..count).map(|level| of(level).unwrap_or(f64::NAN));
+    found.collect()
 }
 
 /// Whether variances differ by no more than rounding of the criterion allows.

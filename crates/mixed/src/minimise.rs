@@ -25,7 +25,7 @@ pub(crate) const FLAT: f64 = 1e-9;
 const LEVEL: f64 = 1e-5;
 
 /// Coordinates are taken to be at least of this size.
-const LEAST_SIZE: f64 = 0.05;
+pub(crate) const LEAST_SIZE: f64 = 0.05;
 
 /// Value and gradient; `None` where there is none.
 pub(crate) type Sloped = Option<(f64, Vec<f64>)>;

@@ -107,7 +107,7 @@ pub fn predict_mixed(
                     slope[fit.estimate.theta.len() + level - 1] += ratios[level] * sigma * sigma;
                 }
             }
-            slope.push(2.0 * sigma * relative);
+            slope.push(2.0 * sigma * sigma * relative);
             let variance = relative * sigma * sigma;
             let df = degrees_of_freedom(uncertainty, variance, &DVector::from_vec(slope));
             (
@@ -117,7 +117,8 @@ pub fn predict_mixed(
             )
         };
         let (se, df, mean) = half(false);
-        let (_, _, single) = half(true);
+        // More degrees of freedom must not make a measurement surer than its mean.
+        let single = half(true).2.max(mean);
         MixedPrediction {
             population,
             predicted: value,

@@ -5,11 +5,15 @@ use crate::error::MixedError;
 use crate::finding::MixedFinding;
 use crate::fit::{MixedFit, MixedMethod, MixedOptions, fit_mixed_model};
 use rayon::prelude::*;
+use std::cell::Cell;
 use windfall_distribution::tail::normal_upper_quantile;
 use windfall_numerics::root::bracketed_root;
 
 /// Relative width of the bracket around the end of an interval.
 const END_TOLERANCE: f64 = 1e-7;
+
+/// A log-likelihood higher than that of the fit by more belongs to another maximum.
+const HIGHER: f64 = 1e-3;
 
 /// Doublings of the distance from the estimate before an upper end is given up.
 const MOST_DOUBLINGS: usize = 40;
@@ -142,11 +146,11 @@ fn interval(
         });
     };
     // signed root of what the deviance rises by
+    let lowest_seen = Cell::new(fit.criterion);
     let rise = |value: f64| {
-        let minimum = constrained.minimum(value);
-        minimum
-            .map_or(f64::INFINITY, |d| (d - fit.criterion).max(0.0).sqrt())
-            .min(1e8)
+        let minimum = constrained.minimum(value).unwrap_or(f64::INFINITY);
+        lowest_seen.set(lowest_seen.get().min(minimum));
+        (minimum - fit.criterion).max(0.0).sqrt().min(1e8)
     };
     let (lowest, step, highest) = match parameter {
         VarianceParameter::Correlation { .. } => (-1.0, 0.25, 1.0),
@@ -169,6 +173,13 @@ fn interval(
     }
     if !high.is_finite() || !estimate.is_finite() {
         open("upper");
+    }
+    let rise = 0.5 * (fit.criterion - lowest_seen.get());
+    if rise > HIGHER {
+        findings.push(MixedFinding::HigherElsewhere {
+            parameter: name.clone(),
+            rise,
+        });
     }
     let interval = ProfileInterval {
         parameter,

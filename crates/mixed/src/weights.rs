@@ -67,6 +67,13 @@ impl Weights {
         })
     }
 
+    /// The columns that [`Weights::weigh_columns`] was given.
+    pub fn unweigh_columns(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(x.nrows(), x.ncols(), |row, column| {
+            x[(row, column)] / self.root(row)
+        })
+    }
+
     /// [`Weights::weigh`] of values that begin at a row.
     pub fn weigh_from(&self, first: usize, values: &mut [f64]) {
         for (value, root) in values.iter_mut().zip(self.roots.iter().skip(first)) {

@@ -8,7 +8,9 @@ use windfall_distribution::tail::chi_squared_upper_quantile;
 use windfall_mixed::coefficient::{Coefficient, Estimated};
 use windfall_mixed::error::MixedError;
 use windfall_mixed::fit::MixedMethod;
-use windfall_mixed::inference::{FTest, VarianceUncertainty, contrast_df, f_test_of};
+use windfall_mixed::inference::{
+    FTest, VarianceUncertainty, contrast_df, f_test_of, independent_sums,
+};
 use windfall_mixed::residual_levels::ResidualLevels;
 use windfall_mixed::weights::Weights;
 
@@ -387,30 +389,13 @@ impl LevelInference {
     /// * `sums`: weights of all columns of the model, a row for each sum
     ///
     /// # Numerics
-    /// Fai and Cornelius' degrees of freedom depend on which sums stand for all that follow from
-    /// them. Those are taken that one variance would make independent and equally sure, so that
-    /// the same question has the same answer however it is coded.
+    /// The sums are turned into independent ones, [`independent_sums`].
     pub fn test(&self, sums: &DMatrix<f64>) -> Option<FTest> {
-        /// Part of the largest variance below which a sum follows from others.
-        const RANK: f64 = 1e-10;
         let own = sums.select_columns(&self.columns);
         if own.is_empty() {
             return None;
         }
-        let eigen = (&own * &self.ordinary * own.transpose()).symmetric_eigen();
-        let least = RANK * eigen.eigenvalues.amax();
-        let pairs = eigen
-            .eigenvalues
-            .iter()
-            .zip(eigen.eigenvectors.column_iter());
-        let rows = pairs.filter(|(value, _)| **value > least);
-        let rows: Vec<_> = rows
-            .map(|(value, vector)| vector.transpose() * &own / value.sqrt())
-            .collect();
-        if rows.is_empty() {
-            return None;
-        }
-        let own = DMatrix::from_rows(&rows);
+        let own = independent_sums(&own, &self.ordinary)?;
         f_test_of((&self.estimates, &self.covariance), &self.uncertainty, &own).ok()
     }
 }

@@ -204,7 +204,7 @@ fn notes(own: &Diagnostics, found: &Found) -> Vec<String> {
     let level = percent(own.confidence);
     notes.extend(match found.held {
         Held::Normal => Some(format!(
-            "Scaled residual: over the residual standard deviation. Band: {level} % for all rows \
+            "Scaled residual: over the residual standard deviation of its row. Band: {level} % for all rows \
              together, as if independent and normal (equal local levels)."
         )),
         Held::Student(df) if df >= 1.0 => Some(format!(

@@ -296,8 +296,13 @@ pub(crate) fn fit_findings(
         found.push(finding(
             "decides-alone",
             format!(
-                "{} alone decides a coefficient: PRESS and predicted R² do not exist",
-                lines_text(&alone)
+                "{} {} a coefficient alone: PRESS and predicted R² do not exist",
+                lines_text(&alone),
+                if alone.len() == 1 {
+                    "decides"
+                } else {
+                    "each decide"
+                }
             ),
         ));
     }

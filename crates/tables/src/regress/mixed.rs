@@ -104,7 +104,6 @@ pub fn regress_mixed(
     let (variances, profile_findings) = variances(&fitted.fit, &profiles);
     let response = formula.response.as_ref().map(spelling).unwrap_or_default();
     let inferred = (&fitted, &uncertainty, adjusted.as_ref());
-    draw(request, (&chosen, &response), inferred, &profiles)?;
     let mut findings = left_out_finding(&left_out, &data.lines);
     findings.extend(data.left_out_finding());
     findings.extend(code_findings(&fitted.rows.frame, &data.table));
@@ -112,7 +111,12 @@ pub fn regress_mixed(
     findings.extend(condition_finding(fitted.condition));
     let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
     let own = own.map(|f| finding(f.code(), f.to_string()));
-    findings.extend(own.chain(profile_findings));
+    for own in own.chain(profile_findings) {
+        // Both the search and the inference may find the same.
+        if !findings.contains(&own) {
+            findings.push(own);
+        }
+    }
     let (means, not_estimable) = means(request, data, (formula, &runs), inferred)?;
     findings.extend(not_estimable);
     let (asked, ranges) = (request.asked()?, ranges_of(formula, &data.table, &runs));
@@ -123,6 +127,13 @@ pub fn regress_mixed(
     ));
     let scale = formula.response.as_ref();
     let scale = scale.and_then(|response| OriginalScale::of(response, &data.table, &runs));
+    let predictions = predictions(
+        (request, asked.as_ref()),
+        scale.as_ref(),
+        &fitted,
+        &uncertainty,
+    )?;
+    draw(request, (&chosen, &response), inferred, &profiles)?;
     let shares = variance_shares(&fitted.fit);
     let fit = &fitted.fit;
     Ok(MixedOutcome {
@@ -154,12 +165,7 @@ pub fn regress_mixed(
         bic: fit.bic,
         removed: Vec::new(),
         effects: effects(&fitted),
-        predictions: predictions(
-            (request, asked.as_ref()),
-            scale.as_ref(),
-            &fitted,
-            &uncertainty,
-        )?,
+        predictions,
         means,
         findings,
     })

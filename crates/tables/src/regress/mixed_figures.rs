@@ -86,22 +86,30 @@ fn residuals(own: &MixedShown) -> Result<Painting, Error> {
         parameters: fit.coefficients.len(),
         confidence: own.confidence,
     };
-    let by_group = own.terms.first().map(|term| by_group(own, term));
-    let by_group = by_group.into_iter().collect();
+    let groups = own.terms.first();
+    let groups = groups.map(|term| (&term.name, &term.group, &term.group_names));
+    let levels = own.fit.model.levels();
+    let levels = levels.map(|own| (&own.column, &own.level, &own.names));
+    let by_group = groups.into_iter().chain(levels);
+    let by_group = by_group.map(|(name, group, names)| by_group_panel(own, (name, group, names)));
+    let by_group = by_group.collect();
     diagnostics_painting("diagnostics", &shown, Arrangement::Mixed, by_group)
 }
 
-/// Scaled residuals of the groups of a term, in the order of their names.
-fn by_group(own: &MixedShown, term: &RandomTerm) -> GridPanel {
+/// Scaled residuals of groups of rows, in the order of their names.
+fn by_group_panel(
+    own: &MixedShown,
+    (name, group, names): (&str, &[usize], &[String]),
+) -> GridPanel {
     let fit = own.fit;
     let size = |row: usize| fit.residuals[row].abs();
     let drawn = drawn_rows(own.lines.len(), &[("", &size)]).rows;
-    let few = term.groups <= 6;
+    let few = names.len() <= 6;
     // Names stand at 0, 1, 2 …; groups without names are counted from 1.
     let shift = if few { 0.0 } else { 1.0 };
     let dots = drawn.iter().map(|row| {
         let value = fit.residuals[*row] * fit.model.weights().root(*row) / fit.residual_sd;
-        (term.group[*row] as f64 + shift, value)
+        (group[*row] as f64 + shift, value)
     });
     let zero = vec![(0.0, 0.0)];
     let series = vec![
@@ -109,13 +117,13 @@ fn by_group(own: &MixedShown, term: &RandomTerm) -> GridPanel {
         Series::new("", Style::Dots, dots.collect()).coloured(0),
     ];
     let x = match few {
-        true => term.name.clone(),
-        false => format!("{}, in the order of names", term.name),
+        true => name.to_owned(),
+        false => format!("{name}, in the order of names"),
     };
     let panel = Panel::new((&x, ""), ("scaled residual", ""), series);
-    let mut panel = GridPanel::new(format!("Residuals by {}", term.name), panel);
+    let mut panel = GridPanel::new(format!("Residuals by {name}"), panel);
     if few {
-        panel.across = Scale::Names(term.group_names.clone());
+        panel.across = Scale::Names(names.to_vec());
     }
     panel
 }

@@ -7,6 +7,7 @@ use crate::regress::means::request::MeansRequest;
 use std::path::PathBuf;
 use windfall_draw::files::FigureFolder;
 use windfall_files::error::Error;
+use windfall_files::option_value::plain_name;
 use windfall_files::table::data::Data;
 
 pub use windfall_mixed::fit::MixedMethod;
@@ -43,7 +44,8 @@ pub struct RegressRequest {
     /// What is maximised where there are random effects, or variances by level
     #[cfg_attr(feature = "clap", arg(long, default_value = "reml", value_parser = likelihood()))]
     pub likelihood: MixedMethod,
-    /// How degrees of freedom are found where there are random effects
+    /// How degrees of freedom are found where there are random effects; intervals of predictions
+    /// are always Satterthwaite's
     #[cfg_attr(
         feature = "clap",
         arg(long, value_enum, default_value_t, value_name = "METHOD")
@@ -158,6 +160,17 @@ impl RegressRequest {
             predict: None,
             figures: None,
             reading: ReadingOptions::default(),
+        }
+    }
+
+    /// The same with columns named without backticks.
+    pub(crate) fn with_plain_names(&self) -> Self {
+        let plain = |own: &Option<String>| own.as_deref().map(plain_name);
+        Self {
+            weights: plain(&self.weights),
+            variance: plain(&self.variance),
+            fold_by: plain(&self.fold_by),
+            ..self.clone()
         }
     }
 

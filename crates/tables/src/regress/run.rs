@@ -124,6 +124,7 @@ pub(crate) fn random_text(random: &str, columns: &[String]) -> String {
 /// # Errors
 /// The table or the formula cannot be read; too few rows; a response of one value.
 pub fn regress(request: &RegressRequest) -> Result<AnyRegressOutcome, Error> {
+    let request = &request.with_plain_names();
     check(request)?;
     check_outputs([request.figures.as_ref().map(|own| own.directory.as_path())])?;
     let file = open_data(&request.table)?;

@@ -24,6 +24,7 @@ use windfall_statistics::model::reduced::Reduced;
 use windfall_statistics::model::variance_groups::{
     LevelInference, LevelledRows, VarianceGroups, variance_groups,
 };
+use windfall_statistics::table::Cells;
 
 /// Estimated variances, and the levels that they are of.
 pub(crate) struct ByLevel {
@@ -115,7 +116,19 @@ pub(crate) fn residual_levels(
     known.sort_unstable();
     known.dedup();
     if known.len() < 2 {
-        let problem = format!("{column} has one level in the rows of the model: leave it out");
+        let problem = format!(
+            "all rows of the model have the same {column}, so that there are no variances to \
+             tell apart: leave the option out"
+        );
+        return Err(unusable("--variance", problem));
+    }
+    if matches!(cells, Cells::Numbers(_)) && 2 * known.len() > codes.len() {
+        let problem = format!(
+            "{column} holds {} different numbers in {} rows: it measures something, and names no \
+             groups of rows",
+            known.len(),
+            codes.len()
+        );
         return Err(unusable("--variance", problem));
     }
     let place = |code: &usize| known.binary_search(code).unwrap_or_default();
@@ -136,12 +149,21 @@ pub(crate) fn asked_levels(levels: &ResidualLevels, asked: &Data) -> Result<Vec<
     let cells = &asked.table.column(&levels.column).map_err(told)?.cells;
     let categories = cells.categories();
     let found = (0..asked.table.rows()).map(|row| {
-        let name = categories.codes[row].map_or("", |code| &categories.levels[code]);
+        let Some(code) = categories.codes[row] else {
+            let problem = format!(
+                "{}, line {}: {} is missing, whose level says how much a measurement scatters",
+                asked.path.display(),
+                asked.line(row),
+                levels.column
+            );
+            return Err(unusable("--predict", problem));
+        };
+        let name = &categories.levels[code];
         let level = levels.names.iter().position(|own| own == name);
         level.ok_or_else(|| {
             told(StatisticsError::UnknownLevel {
                 column: levels.column.clone(),
-                level: name.to_owned(),
+                level: name.clone(),
                 row: row + 1,
                 known: levels.names.join(", "),
             })
