@@ -2,9 +2,10 @@
 
 use crate::basis::dot;
 use crate::error::MixedError;
+use crate::evaluate::evaluate;
 use crate::finding::MixedFinding;
-use crate::fit::{MixedFit, MixedOptions, fit_from, fit_mixed_model};
-use crate::levels::{level_curvatures, level_slopes};
+use crate::fit::{MixedFit, MixedMethod, MixedOptions, fit_from, fit_mixed_model};
+use crate::levels::level_slopes;
 use crate::model::{MixedModel, prepare_mixed, prepare_weighted};
 use crate::residual_levels::{LevelVariances, ResidualLevels};
 use crate::slope::slopes;
@@ -180,4 +181,29 @@ fn highest(
         });
     }
     Ok(best)
+}
+
+/// Second derivative of -2 log likelihood by the logarithm of each level's residual variance,
+/// all else held: of independent rows, their degrees of freedom. It vanishes where the level's
+/// variance may as well be zero. NaN where numbers overflow.
+fn level_curvatures(fit: &MixedFit) -> Vec<f64> {
+    /// Step of the differences.
+    const STEP: f64 = 0.05;
+    let Some(levels) = &fit.model.levels else {
+        return Vec::new();
+    };
+    let count = levels.names.len();
+    let slope = |level: usize, by: f64| {
+        let mut logs = vec![0.0; count];
+        logs[level] = by;
+        let model = fit.model.with_levels(levels, &logs);
+        let state = evaluate(&model, &fit.state.blocks)?;
+        let (_, projections) = slopes(&model, &state);
+        let own = level_slopes(&model, &state, &projections)?;
+        let restricted = fit.method == MixedMethod::Reml;
+        Some(own.deviance_by(level, restricted, fit.residual_sd.powi(2)))
+    };
+    let of = |level| Some((slope(level, STEP)? - slope(level, -STEP)?) / (2.0 * STEP));
+    let found = (0..count).map(|level| of(level).unwrap_or(f64::NAN));
+    found.collect()
 }

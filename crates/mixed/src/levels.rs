@@ -13,12 +13,11 @@
 use crate::basis::dot;
 use crate::blocks::{fixed_square, leaf_of, trunk_of};
 use crate::effects::scaled_effects;
-use crate::evaluate::{State, evaluate};
-use crate::fit::{MixedFit, MixedMethod};
+use crate::evaluate::State;
 use crate::model::MixedModel;
 use crate::residual_levels::ResidualLevels;
 use crate::row::{Row, RowWork};
-use crate::slope::{Projections, slopes};
+use crate::slope::Projections;
 use crate::weights::Weights;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -44,7 +43,7 @@ impl MixedModel {
     }
 
     /// The model with the residual variance of every level times exp(logs).
-    fn with_levels(&self, levels: &ResidualLevels, logs: &[f64]) -> Self {
+    pub(crate) fn with_levels(&self, levels: &ResidualLevels, logs: &[f64]) -> Self {
         let of_level: Vec<f64> = logs.iter().map(|log| (-0.5 * log).exp()).collect();
         let roots: Vec<f64> = levels.level.iter().map(|own| of_level[*own]).collect();
         let scale = |values: &mut [f64]| {
@@ -99,7 +98,7 @@ impl LevelSlopes {
     }
 
     /// The same by one level.
-    fn deviance_by(&self, level: usize, restricted: bool, variance: f64) -> f64 {
+    pub(crate) fn deviance_by(&self, level: usize, restricted: bool, variance: f64) -> f64 {
         let fixed = match restricted {
             true => self.log_fixed[level],
             false => 0.0,
@@ -148,31 +147,6 @@ pub(crate) fn level_slopes(
         log_fixed: part(1),
         squares: part(2),
     })
-}
-
-/// Second derivative of -2 log likelihood by the logarithm of each level's residual variance,
-/// all else held: of independent rows, their degrees of freedom. It vanishes where the level's
-/// variance may as well be zero. NaN where numbers overflow.
-pub(crate) fn level_curvatures(fit: &MixedFit) -> Vec<f64> {
-    /// Step of the differences.
-    const STEP: f64 = 0.05;
-    let Some(levels) = &fit.model.levels else {
-        return Vec::new();
-    };
-    let count = levels.names.len();
-    let slope = |level: usize, by: f64| {
-        let mut logs = vec![0.0; count];
-        logs[level] = by;
-        let model = fit.model.with_levels(levels, &logs);
-        let state = evaluate(&model, &fit.state.blocks)?;
-        let (_, projections) = slopes(&model, &state);
-        let own = level_slopes(&model, &state, &projections)?;
-        let restricted = fit.method == MixedMethod::Reml;
-        Some(own.deviance_by(level, restricted, fit.residual_sd.powi(2)))
-    };
-    let of = |level| Some((slope(level, STEP)? - slope(level, -STEP)?) / (2.0 * STEP));
-    let found = (0..count).map(|level| of(level).unwrap_or(f64::NAN));
-    found.collect()
 }
 
 /// Whether variances differ by no more than rounding of the criterion allows.

@@ -325,13 +325,20 @@ fn says_what_is_wrong_with_variances_by_level_beside_random_effects() {
     let quoted = json(FRUIT, &[&options[..], &["`variety`"]].concat());
     assert_eq!(plain["level_variances"], quoted["level_variances"]);
     let told = with("V", &[]);
-    assert!(told.contains("V holds 20 different numbers in 22 rows"), "{told}");
+    assert!(
+        told.contains("V holds 20 different numbers in 22 rows"),
+        "{told}"
+    );
     let one = FRUIT.replace("Gala", "Fuji");
     let told = refused(&one, &[&options[..], &["variety"]].concat());
     assert!(told.contains("have the same variety"), "{told}");
     // Only the prediction needs the level that is missing; no figure is written before.
     let table = FRUIT.replace("y\nGala", "y\n,z,0.3,NA\nGala");
-    let asked = [&options[..], &["variety", "--predict", "t.csv", "--figures", "fig"]].concat();
+    let asked = [
+        &options[..],
+        &["variety", "--predict", "t.csv", "--figures", "fig"],
+    ]
+    .concat();
     let told = refused(&table, &asked);
     assert!(told.contains("line 2: variety is missing"), "{told}");
     // Each fruit has a slope of its own for two or three impacts.

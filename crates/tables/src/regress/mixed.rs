@@ -105,18 +105,11 @@ pub fn regress_mixed(
     let response = formula.response.as_ref().map(spelling).unwrap_or_default();
     let inferred = (&fitted, &uncertainty, adjusted.as_ref());
     let mut findings = left_out_finding(&left_out, &data.lines);
-    findings.extend(data.left_out_finding());
-    findings.extend(code_findings(&fitted.rows.frame, &data.table));
-    findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
-    findings.extend(condition_finding(fitted.condition));
-    let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
-    let own = own.map(|f| finding(f.code(), f.to_string()));
-    for own in own.chain(profile_findings) {
-        // Both the search and the inference may find the same.
-        if !findings.contains(&own) {
-            findings.push(own);
-        }
-    }
+    findings.extend(fit_findings(
+        data,
+        (&fitted, &uncertainty),
+        profile_findings,
+    ));
     let (means, not_estimable) = means(request, data, (formula, &runs), inferred)?;
     findings.extend(not_estimable);
     let (asked, ranges) = (request.asked()?, ranges_of(formula, &data.table, &runs));
@@ -169,6 +162,26 @@ pub fn regress_mixed(
         means,
         findings,
     })
+}
+
+/// What is said of a fit; that which search, inference and profiles all say, once.
+fn fit_findings(
+    data: &Data,
+    (fitted, uncertainty): (&Fitted, &VarianceUncertainty),
+    profile_findings: Vec<FindingOutcome>,
+) -> Vec<FindingOutcome> {
+    let mut findings: Vec<FindingOutcome> = data.left_out_finding().into_iter().collect();
+    findings.extend(code_findings(&fitted.rows.frame, &data.table));
+    findings.extend(aliased_findings(&fitted.rows.frame, &fitted.aliased));
+    findings.extend(condition_finding(fitted.condition));
+    let own = fitted.fit.findings.iter().chain(&uncertainty.findings);
+    let own = own.map(|f| finding(f.code(), f.to_string()));
+    for own in own.chain(profile_findings) {
+        if !findings.contains(&own) {
+            findings.push(own);
+        }
+    }
+    findings
 }
 
 /// What linear models have, and mixed ones do not.

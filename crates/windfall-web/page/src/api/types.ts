@@ -244,12 +244,14 @@ export interface MeasuredOutcome {
 export interface MeasuredValue {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string;
 }
+export interface MixedLevelsOutcome { by: string; rows: [string, number][]; test: VariancesTest; }
 export type MixedOutcome = RowCount & ({
   formula: string; response: string; method: string; df_method: string; groups: [string, number][];
-  weights: string | null; terms: TermOutcome[]; covariance: number[][]; ranges: ModelRange[]; anova: MixedTest[];
-  variances: VarianceOutcome[]; r2: number; r2_adjusted: number | null; r2_conditional: number; intraclass: number[];
-  log_likelihood: number; criterion: number; aic: number; aicc: number; bic: number; removed: string[];
-  effects: EffectOutcome[]; predictions: MixedPredictionOutcome[]; means: MeansOutcome[]; findings: FindingOutcome[];
+  weights: string | null; level_variances: MixedLevelsOutcome | null; terms: TermOutcome[]; covariance: number[][];
+  ranges: ModelRange[]; anova: MixedTest[]; variances: VarianceOutcome[]; r2: number; r2_adjusted: number | null;
+  r2_conditional: number; intraclass: number[]; log_likelihood: number; criterion: number; aic: number; aicc: number;
+  bic: number; removed: string[]; effects: EffectOutcome[]; predictions: MixedPredictionOutcome[];
+  means: MeansOutcome[]; findings: FindingOutcome[];
 });
 export interface MixedPrediction {
   population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
