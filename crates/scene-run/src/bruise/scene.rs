@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::io::{Read, Result as IoResult, Write};
 use windfall_files::found::FindingOutcome;
 use windfall_scene::binary::{Binary, no_value};
-use windfall_scene::bruise::damage::{Blow, Bruise};
+use windfall_scene::bruise::damage::{Blow, Bruise, variance_ratio};
 use windfall_scene::draws::{normal_of, normals};
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::scene::Scene;
@@ -21,8 +21,8 @@ pub struct Blows {
     draws: Vec<(f64, f64)>,
     /// Contacts that bruise outside of the range of a regression, and all that do.
     outside: [usize; 2],
-    /// Contacts of each fruit, and what each was with: the number of a wall, or of walls in
-    /// all for a fruit.
+    /// Contacts of each fruit, and what each was with: the number of a wall, or that of a fruit
+    /// after all walls.
     of: Vec<Vec<Blow>>,
     with: Vec<Vec<usize>>,
     /// Volumes of their bruises, by the model as it is; m³.
@@ -91,6 +91,11 @@ pub fn finding_of_blows(blows: &Blows) -> Option<FindingOutcome> {
     })
 }
 
+/// The largest bruise.
+fn worst(bruises: &[Bruise]) -> Option<&Bruise> {
+    bruises.iter().max_by(|a, b| a.volume.total_cmp(&b.volume))
+}
+
 impl Blows {
     /// Empty.
     ///
@@ -116,20 +121,22 @@ impl Blows {
     pub fn count(&mut self, scene: &Scene, event: &Event) {
         let mass = |fruit: u32| scene.fruit[fruit as usize].mass;
         let own = mass(event.fruit);
+        let after_walls = |fruit: u32| scene.walls.len() + fruit as usize;
         let (place, usual, mass) = match event.partner {
-            Partner::Fruit(other) => {
-                let other = mass(other);
-                (scene.walls.len(), 0.5, own * other / (own + other))
+            Partner::Fruit(fruit) => {
+                let other = mass(fruit);
+                (after_walls(fruit), 0.5, own * other / (own + other))
             }
             Partner::Wall(wall) => (wall as usize, 1.0, own),
         };
         let share = self.shares.get(&scene.materials_of(event));
         let share = share.copied().unwrap_or(usual);
         let impact_energy = 0.5 * mass * event.normal_speed * event.normal_speed;
-        let felt = (share, impact_energy, place);
-        self.strike(scene, event, (event.fruit, false), felt);
+        let felt = |place| (share, impact_energy, place);
+        self.strike(scene, event, (event.fruit, false), felt(place));
         if let Partner::Fruit(other) = event.partner {
-            self.strike(scene, event, (other, true), felt);
+            let place = after_walls(event.fruit);
+            self.strike(scene, event, (other, true), felt(place));
         }
     }
 
@@ -248,11 +255,34 @@ impl Blows {
         self.of.iter().map(|own| plan.model.bruises(own)).collect()
     }
 
+    /// Variance of the share of fruit above a limit over that of independent fruit.
+    fn variance_ratio(&self, all: &[Vec<Bruise>], limit: f64, walls: usize) -> f64 {
+        let bad: Vec<Option<&Bruise>> = all
+            .iter()
+            .map(|own| worst(own).filter(|bruise| bruise.volume > limit))
+            .collect();
+        let partner = |fruit: usize, own: &Bruise| self.with[fruit][own.contact].checked_sub(walls);
+        let pairs = bad.iter().enumerate().filter_map(|(fruit, own)| {
+            let other = partner(fruit, (*own)?)?;
+            Some((fruit.min(other), fruit.max(other)))
+        });
+        let mut pairs: Vec<(usize, usize)> = pairs.collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let bruised: Vec<bool> = bad.iter().map(Option::is_some).collect();
+        variance_ratio(&bruised, &pairs)
+    }
+
     /// The result.
     pub fn outcome(&self, plan: &BruisePlan, scene: &Scene) -> BruiseOutcome {
-        let shares = plan
-            .model
-            .shares_above(&self.of, &plan.limits, LEVEL, DRAWS);
+        let all = self.bruises(plan);
+        let walls = scene.walls.len();
+        let limits: Vec<(f64, f64)> = plan
+            .limits
+            .iter()
+            .map(|limit| (*limit, self.variance_ratio(&all, *limit, walls)))
+            .collect();
+        let shares = plan.model.shares_above(&self.of, &limits, LEVEL, DRAWS);
         let limits = plan.limits.iter().zip(shares);
         let limits = limits.map(|(&limit, found)| LimitOutcome {
             limit,
@@ -270,16 +300,17 @@ impl Blows {
             })
             .collect();
         let mut largest = 0.0;
-        for (bruises, with) in self.bruises(plan).iter().zip(&self.with) {
-            let worst = bruises.iter().max_by(|a, b| a.volume.total_cmp(&b.volume));
+        for (bruises, with) in all.iter().zip(&self.with) {
+            let place = |bruise: &Bruise| with[bruise.contact].min(walls);
+            let worst = worst(bruises);
             for bruise in bruises {
-                let own = &mut places[with[bruise.contact]];
+                let own = &mut places[place(bruise)];
                 own.bruises += 1;
                 own.largest = own.largest.max(bruise.volume);
             }
             if let Some(worst) = worst {
                 largest += worst.volume;
-                places[with[worst.contact]].fruit += 1;
+                places[place(worst)].fruit += 1;
             }
         }
         places.retain(|own| own.bruises > 0);

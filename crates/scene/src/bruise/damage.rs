@@ -313,38 +313,74 @@ impl BruiseModel {
     /// Shares of fruit whose largest bruise exceeds limits, with the ends of their intervals.
     ///
     /// The interval has in it that other fruit would have come (Jeffreys' distribution of a
-    /// binomial share), and the uncertainty of the coefficients, resampled.
+    /// binomial share, made wider where fruit bruise each other), and the uncertainty of the
+    /// coefficients, resampled.
     ///
     /// * `blows`: contacts of each fruit
-    /// * `limits`: m³
+    /// * `limits`: m³, each with the variance of the share over that of independent fruit
     /// * `level`: of the interval; 1
     pub fn shares_above(
         &self,
         blows: &[Vec<Blow>],
-        limits: &[f64],
+        limits: &[(f64, f64)],
         level: f64,
         (draws, seed): (usize, u64),
     ) -> Vec<Share> {
-        let counts = self.counts_above(blows, limits, (draws, seed));
+        let volumes: Vec<f64> = limits.iter().map(|own| own.0).collect();
+        let counts = self.counts_above(blows, &volumes, (draws, seed));
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         // Another stream than that of the models.
         generator.set_stream(1);
         let share = |place: usize| {
             let own: Vec<usize> = counts.iter().map(|counts| counts[place]).collect();
-            share_of(&own, blows.len(), level, &mut generator)
+            share_of(&own, (blows.len(), limits[place].1), level, &mut generator)
         };
         (0..limits.len()).map(share).collect()
     }
 }
 
+/// Variance of a share of fruit over that of independent fruit, at least 1: fruit that bruise
+/// each other are bruised together.
+///
+/// * `bruised`: whether each fruit is; `together`: pairs of fruit of which one is bruised most
+///   by the other, each pair once
+///
+/// # Source
+/// Cluster-robust variance of a mean: Liang and Zeger (1986), Biometrika 73, 13-22, eq. 7, with
+/// pairs that overlap as clusters; Conley (1999), J. Econometrics 92, 1-45.
+pub fn variance_ratio(bruised: &[bool], together: &[(usize, usize)]) -> f64 {
+    let share = bruised.iter().filter(|own| **own).count() as f64 / bruised.len() as f64;
+    let apart = |fruit: usize| f64::from(u8::from(bruised[fruit])) - share;
+    let own: f64 = (0..bruised.len()).map(|fruit| apart(fruit).powi(2)).sum();
+    let pairs = together.iter().map(|(a, b)| apart(*a) * apart(*b));
+    match own > 0.0 {
+        true => (1.0 + 2.0 * pairs.sum::<f64>() / own).max(1.0),
+        false => 1.0,
+    }
+}
+
 /// A share from counts of fruit: the first by the model as it is, the others by drawn ones.
-fn share_of(counts: &[usize], fruit: usize, level: f64, generator: &mut ChaCha8Rng) -> Share {
+///
+/// * `ratio`: of the variance over that of independent fruit, by which draws are moved away from
+///   their centre on the scale ln(p/(1 − p))
+fn share_of(
+    counts: &[usize],
+    (fruit, ratio): (usize, f64),
+    level: f64,
+    generator: &mut ChaCha8Rng,
+) -> Share {
+    let spread = |drawn: f64, bad: usize| {
+        let logit = |p: f64| (p / (1.0 - p)).ln();
+        let centre = logit((bad as f64 + 0.5) / (fruit as f64 + 1.0));
+        let moved = centre + ratio.sqrt() * (logit(drawn) - centre);
+        1.0 / (1.0 + (-moved).exp())
+    };
     let (own, drawn) = counts.split_first().unwrap_or((&0, &[]));
     let mut shares: Vec<f64> = drawn
         .iter()
         .map(|&bad| {
             let above = gamma_half(bad, generator);
-            above / (above + gamma_half(fruit - bad, generator))
+            spread(above / (above + gamma_half(fruit - bad, generator)), bad)
         })
         .collect();
     shares.sort_by(f64::total_cmp);
@@ -451,7 +487,7 @@ mod tests {
     fn closed_form_shares_and_their_uncertainty() {
         let fruit = |count: usize, energy: f64| vec![vec![blow(energy, [0.0, 0.0, 1.0])]; count];
         let blows = [fruit(3, 0.15), fruit(7, 0.06)].concat();
-        let found = MODEL.shares_above(&blows, &[1e-7], 0.95, (20_000, 1))[0];
+        let found = MODEL.shares_above(&blows, &[(1e-7, 1.0)], 0.95, (20_000, 1))[0];
         // Quantiles of Beta(3.5, 7.5), by Brown, Cai and DasGupta's (2001) interval of Jeffreys:
         // mean 0.318, standard deviation 0.1345; checked by its first two moments below.
         assert_eq!(found.share, 0.3);
@@ -460,7 +496,7 @@ mod tests {
             "{found:?}"
         );
         // None of ten: the interval does not shrink to nothing.
-        let none = MODEL.shares_above(&fruit(10, 0.06), &[1e-7], 0.95, (20_000, 1))[0];
+        let none = MODEL.shares_above(&fruit(10, 0.06), &[(1e-7, 1.0)], 0.95, (20_000, 1))[0];
         assert!(
             none.share == 0.0 && none.low < 1e-3 && (0.20..0.24).contains(&none.high),
             "{none:?}"
@@ -470,12 +506,31 @@ mod tests {
             threshold_sd: 0.03,
             ..MODEL
         };
-        let wide = unsure.shares_above(&blows, &[2.5e-7], 0.95, (4000, 1))[0];
-        let sure = MODEL.shares_above(&blows, &[2.5e-7], 0.95, (4000, 1))[0];
+        let wide = unsure.shares_above(&blows, &[(2.5e-7, 1.0)], 0.95, (4000, 1))[0];
+        let sure = MODEL.shares_above(&blows, &[(2.5e-7, 1.0)], 0.95, (4000, 1))[0];
         assert!(
             wide.high - wide.low > sure.high - sure.low,
             "{wide:?} {sure:?}"
         );
+    }
+
+    /// Fruit that are always bruised in pairs are half as many.
+    #[test]
+    fn closed_form_pairs_double_the_variance() {
+        let bruised: Vec<bool> = (0..40).map(|own| own % 8 < 2).collect();
+        let pairs: Vec<(usize, usize)> = (0..20).map(|own| (2 * own, 2 * own + 1)).collect();
+        assert!((variance_ratio(&bruised, &pairs) - 2.0).abs() < 1e-12);
+        assert_eq!(variance_ratio(&bruised, &[]), 1.0);
+        assert_eq!(variance_ratio(&[false; 5], &[(0, 1)]), 1.0);
+        // Four times the variance is twice the width on the scale of logarithms of odds.
+        let fruit = |count: usize, energy: f64| vec![vec![blow(energy, [0.0, 0.0, 1.0])]; count];
+        let blows = [fruit(30, 0.15), fruit(70, 0.06)].concat();
+        let width = |ratio: f64| {
+            let own = MODEL.shares_above(&blows, &[(1e-7, ratio)], 0.95, (20_000, 1))[0];
+            let logit = |p: f64| (p / (1.0 - p)).ln();
+            logit(own.high) - logit(own.low)
+        };
+        assert!((width(4.0) / width(1.0) - 2.0).abs() < 1e-9);
     }
 
     #[test]
