@@ -284,6 +284,27 @@ fn reference_variances_by_level_beside_random_effects() {
     all_close(&column(own, "se"), &[0.414562, 0.4462177], 1e-6);
 }
 
+/// Whether means are equal is one question beside random effects, too.
+#[test]
+fn conserves_the_test_of_a_term_beside_random_effects() {
+    let options = [
+        "--formula",
+        "y ~ g + (1 | x)",
+        "--variance",
+        "g",
+        "--means",
+        "g",
+    ];
+    let found = json(GROUPS, &options);
+    let expected = found["anova"][0]["df_denominator"].as_f64().unwrap();
+    for other in [&[][..], &["--levels", "g=c,a,b"], &["--contrasts", "sum"]] {
+        let found = json(GROUPS, &[&options[..], other].concat());
+        close(&found["anova"][0]["df_denominator"], expected, 1e-6);
+        let test = &found["means"][0]["tests"][0];
+        close(&test["df_denominator"], expected, 1e-6);
+    }
+}
+
 /// A further impact on a fruit that was not struck scatters as its variety does.
 #[test]
 fn predicts_impacts_with_the_variance_of_their_level() {
