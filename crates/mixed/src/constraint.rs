@@ -135,8 +135,8 @@ impl<'a> Constrained<'a> {
         0.1 * self.fit.residual_sd / size
     }
 
-    /// The least value at which the likelihood is evaluated: levels of which one hardly varies
-    /// are as good as levels of which one does not vary.
+    /// The least value at which the likelihood is evaluated. Below it, a level's standard
+    /// deviation is as good as zero.
     pub(crate) fn least(&self) -> f64 {
         match self.parameter {
             VarianceParameter::Correlation { .. } => -1.0,

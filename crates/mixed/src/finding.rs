@@ -31,13 +31,13 @@ pub enum MixedFinding {
     },
     #[error(
         "the likelihood is higher by {rise:.3} where the level {level} does not scatter about the \
-         model at all; shown is the highest maximum at which every level does: the rows hardly \
-         tell the variance of that level"
+         model at all; shown is the highest maximum at which every level does: the rows say \
+         little about the variance of that level"
     )]
     HigherWithoutScatter { level: String, rise: f64 },
     #[error(
-        "the likelihood has another maximum, whose logarithm is lower by {below:.3}: the rows are \
-         few for so many variances, and what they say is less sure than errors and intervals tell"
+        "the log-likelihood has a second maximum, lower by {below:.3}: there are few rows for so \
+         many variances, and standard errors and intervals understate the uncertainty"
     )]
     SeveralMaxima { below: f64 },
     #[error(

@@ -183,8 +183,8 @@ fn recovers_profile_intervals_of_standard_deviations_near_their_rate() {
 }
 
 /// Two varieties of eight fruit, four impacts on each; impacts of the second scatter four times
-/// as much. Of the line of each variety, one residual variance gives intervals that hold too
-/// often and too seldom.
+/// as much. With one residual variance, intervals of the first variety's line hold the truth too
+/// often, and those of the second too seldom.
 #[test]
 fn recovers_lines_and_variances_of_varieties_that_scatter_differently() {
     const SCATTER: [f64; 2] = [8.0, 32.0];

@@ -135,7 +135,7 @@ fn read_runs(request: &SurfacePlanRequest) -> Result<Runs, Error> {
         let message = format!(
             "the column {plots} says that runs are made in whole plots, and the plan takes them \
              for independent: what depends on factors that are set once for each plot will be \
-             known less well than this says"
+             known less well than stated here"
         );
         findings.push(FindingOutcome::new("whole-plots-left-out", message));
     }

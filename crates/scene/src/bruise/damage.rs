@@ -346,8 +346,8 @@ impl BruiseModel {
 ///   by the other, each pair once
 ///
 /// # Source
-/// Cluster-robust variance of a mean: Liang and Zeger (1986), Biometrika 73, 13-22, eq. 7, with
-/// pairs that overlap as clusters; Conley (1999), J. Econometrics 92, 1-45.
+/// Cluster-robust variance of a mean: Liang and Zeger (1986), Biometrika 73, 13-22; with pairs
+/// that overlap in place of clusters Conley (1999), J. Econometrics 92, 1-45.
 pub fn variance_ratio(bruised: &[bool], together: &[(usize, usize)]) -> f64 {
     let share = bruised.iter().filter(|own| **own).count() as f64 / bruised.len() as f64;
     let apart = |fruit: usize| f64::from(u8::from(bruised[fruit])) - share;
