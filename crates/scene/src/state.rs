@@ -5,17 +5,15 @@ use crate::binary::{Binary, no_value};
 use crate::contacts::clump_contacts::{ClumpContacts, Touching, TouchingWall};
 use crate::contacts::contact::Parcel;
 use crate::contacts::neighbours::Bodies;
-use crate::contacts::react::{Memory, Peaks};
 use crate::contacts::wall_contacts::Lifted;
 use crate::contacts::wall_forces::WallMeeting;
 use crate::energy::Account;
 use crate::error::Error;
-use crate::event::{Encounter, Event, Partner};
 use crate::motion::relist::{Carried, Origin};
 use crate::motion::simulation::{FruitState, Leaving, Simulation};
 use crate::scene::Scene;
 use crate::vector::Vector;
-use std::io::{Read, Result as IoResult, Write};
+use std::io::{Result as IoResult, Write};
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS;
 use windfall_contact::laws::kind::{Law, LawKind};
 
@@ -113,68 +111,7 @@ binary!(Account {
     walls,
     brought
 });
-binary!(Memory<f64> {
-    tangential, stiffness, normal, rate, work, friction_work
-});
-binary!(Peaks<f64> {
-    displacement,
-    force,
-    ended
-});
-binary!(Parcel {
-    scale,
-    history,
-    peaks,
-    annuli,
-    rolling,
-    encounter
-});
-binary!(Encounter {
-    time,
-    place,
-    spot,
-    other_spot,
-    normal_speed,
-    tangential_speed
-});
 binary!(Leaving { fruit, time, sink });
-binary!(Event {
-    fruit,
-    partner,
-    time,
-    duration,
-    lasting,
-    place,
-    spot,
-    other_spot,
-    normal_speed,
-    tangential_speed,
-    peak_force,
-    largest_displacement,
-    absorbed_energy,
-    friction_energy
-});
-
-impl Binary for Partner {
-    fn write(&self, to: &mut dyn Write) -> IoResult<()> {
-        let (wall, number) = match self {
-            Self::Fruit(number) => (false, number),
-            Self::Wall(number) => (true, number),
-        };
-        wall.write(to)?;
-        number.write(to)
-    }
-
-    fn read(from: &mut dyn Read) -> IoResult<Self> {
-        let wall = bool::read(from)?;
-        let number = u32::read(from)?;
-        Ok(if wall {
-            Self::Wall(number)
-        } else {
-            Self::Fruit(number)
-        })
-    }
-}
 
 impl State {
     /// Whether it is one of this scene.

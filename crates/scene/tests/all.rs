@@ -9,6 +9,7 @@ mod common;
 mod convergence;
 mod follow;
 mod friction;
+mod loads;
 mod many_fruit;
 mod mesh;
 mod oblique_impacts;

@@ -117,6 +117,17 @@ fn conserves_what_the_frames_show() {
                 "{name} {found} {expected}"
             );
         };
+        assert_eq!(
+            (found.number, found.resting),
+            (expected.number, expected.resting)
+        );
+        // Later loads begin where a force is seen to rise, or to have come to rest: within
+        // the 64 steps between looks.
+        if found.number > 1 {
+            near("time", found.time, expected.time, 0.0, 64.0 * 5e-5);
+            near("peak", found.peak_force, expected.peak_force, 0.003, 0.0);
+            continue;
+        }
         near("time", found.time, expected.time, 0.0, 2e-5);
         near("peak", found.peak_force, expected.peak_force, 0.003, 0.0);
         near(

@@ -259,11 +259,11 @@ impl SceneRun {
         Ok(())
     }
 
-    /// Counts a contact.
+    /// Counts a load. One that does not come and go does not bruise as a blow does.
     pub fn count(&mut self, event: &Event) -> Result<(), Error> {
         let scene = &self.simulation.scene;
         let lasted = self.tally.count(scene, event);
-        if let Some(blows) = &mut self.blows {
+        if let Some(blows) = self.blows.as_mut().filter(|_| !lasted) {
             blows.count(scene, event);
         }
         self.table.write(event, lasted)

@@ -1,4 +1,4 @@
-//! Which contacts of a scene are static loads rather than impacts.
+//! Which loads of a scene are static rather than impacts.
 
 use std::collections::BTreeMap;
 use windfall_contact::law::EndRule;
@@ -7,7 +7,8 @@ use windfall_scene::event::Event;
 use windfall_scene::interaction::{Draws, Interaction};
 use windfall_scene::scene::Scene;
 
-/// A contact that lasts more than so many times a single impact of its speed is a static load.
+/// A load that has not fallen below half of its peak for so many times the duration of a single
+/// impact of its speed is static.
 const LONGER: f64 = 10.0;
 /// Speeds at which the duration of a single impact is known: from, times, how often. m/s.
 const SPEEDS: (f64, f64, usize) = (1e-3, 2.0, 14);
@@ -29,10 +30,10 @@ impl StaticLoads {
         }
     }
 
-    /// Whether a contact is a static load: it was still there at the end, or lasted more than
-    /// ten times a single impact of its speed.
+    /// Whether a load is static: it is a rest of its contact, or took more than ten times as long
+    /// as a single impact of its speed to fall below half of its peak.
     pub fn is_static(&self, scene: &Scene, event: &Event) -> bool {
-        if event.lasting {
+        if event.resting {
             return true;
         }
         let durations = self.durations.get(&scene.materials_of(event));
@@ -41,7 +42,7 @@ impl StaticLoads {
         let place = (event.normal_speed.max(first) / first).log2() / factor.log2();
         durations
             .and_then(|all| all.get(place as usize).or(all.last()))
-            .is_some_and(|single| event.duration > LONGER * single)
+            .is_some_and(|single| event.width > LONGER * single)
     }
 }
 
@@ -94,12 +95,15 @@ mod tests {
         };
         let loads = StaticLoads::of(&scene);
         let single = std::f64::consts::PI * (0.2_f64 / 1e4).sqrt();
-        let event = |normal_speed: f64, duration: f64, lasting: bool| Event {
+        let event = |normal_speed: f64, duration: f64, resting: bool| Event {
             fruit: 0,
             partner: Partner::Wall(0),
             time: 0.0,
             duration,
-            lasting,
+            lasting: false,
+            number: 1,
+            resting,
+            width: duration,
             place: [0.0; 3],
             spot: [0.0; 3],
             other_spot: [0.0; 3],

@@ -22,7 +22,7 @@ use windfall_scene::scene::Scene;
 /// Columns of events.csv.
 const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasting,x_m,y_m,z_m,\
 spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
-tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static";
+tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static,load";
 
 /// Columns of fruit.csv.
 const FRUIT_COLUMNS: &str = "fruit,material,diameter_m,mass_kg,released_s,left_s,sink,x_m,y_m,\
@@ -109,9 +109,9 @@ impl EventFile {
         self.file.keep = keep;
     }
 
-    /// Adds a contact.
+    /// Adds a load.
     ///
-    /// * `lasted`: whether it was a static load
+    /// * `lasted`: whether it was static
     pub fn write(&mut self, event: &Event, lasted: bool) -> Result<(), Error> {
         if event.peak_force < self.least {
             return Ok(());
@@ -123,7 +123,7 @@ impl EventFile {
         };
         let ([x, y, z], [a, b, c], [d, e, f]) = (event.place, event.spot, event.other_spot);
         self.file.write(format!(
-            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{},{lasted}\n",
+            "{},{partner},{number},{},{},{},{x},{y},{z},{a},{b},{c},{d},{e},{f},{},{},{},{},{},{},{lasted},{}\n",
             event.fruit + 1,
             event.time,
             event.duration,
@@ -134,6 +134,7 @@ impl EventFile {
             event.largest_displacement,
             event.absorbed_energy,
             event.friction_energy,
+            event.number,
         ))
     }
 

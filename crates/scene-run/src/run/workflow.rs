@@ -20,9 +20,10 @@ use windfall_files::progress::Progress;
 use windfall_files::write_file::{check_target, write_whole};
 use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::energy::Energy;
-use windfall_scene::motion::time_step::Impact;
+use windfall_scene::interaction::Interaction;
+use windfall_scene::motion::time_step::{Impact, SHORTER, SHORTEST, StepError};
 use windfall_scene::scene::Scene;
-use windfall_scene::vector::{add, dot, length};
+use windfall_scene::vector::{dot, length};
 
 /// Options of a run besides the file.
 #[derive(Clone, Debug, Default)]
@@ -252,58 +253,35 @@ fn histograms_of(tally: &Tally, bruises: Option<&[Vec<Bruise>]>) -> Vec<Histogra
     all.into_iter().flatten().collect()
 }
 
-/// Sets the time step where it is automatic; what it does to the stiffest contact.
+/// Sets the time step where it is automatic; what it does to the stiffest contact, and the largest
+/// errors of all.
 pub fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
     let scene = &plan.scene;
-    let speed = fastest(scene);
     let given = scene.time_step;
     let mut found = StepOutcome::default();
-    for (&(a, b), interaction) in &scene.interactions {
-        let smallest = |material: usize| {
-            let own = scene
-                .fruit
-                .iter()
-                .filter(|fruit| fruit.material == material);
-            own.min_by(|x, y| x.least_felt_mass().total_cmp(&y.least_felt_mass()))
-        };
-        // Of two fruit half the mass and half the radius move.
-        let Some((fruit, share)) = (match (smallest(a), smallest(b)) {
-            (Some(x), Some(y)) => Some((
-                if x.least_felt_mass() < y.least_felt_mass() {
-                    x
-                } else {
-                    y
-                },
-                0.5,
-            )),
-            (own, None) | (None, own) => own.map(|own| (own, 1.0)),
-        }) else {
-            continue;
-        };
-        let impact = Impact {
-            interaction,
-            radius: share * fruit.radius,
-            mass: share * fruit.least_felt_mass(),
-            speed,
-        };
+    let impacts: Vec<([usize; 2], Impact)> = scene
+        .interactions
+        .iter()
+        .filter_map(|(&(a, b), own)| Some(([a, b], hardest(scene, [a, b], own)?)))
+        .collect();
+    for (between, impact) in &impacts {
         let (step, error) = match given > 0.0 {
-            true => (given, checked_step(plan, &impact, given, [a, b])?),
+            true => (given, checked_step(plan, impact, given, *between)?),
             false => impact.step_for(plan.time_step_error).map_err(stopped)?,
-        };
-        let own = StepOutcome {
-            time_step: step,
-            between: [scene.materials[a].clone(), scene.materials[b].clone()],
-            speed,
-            contact_duration: error.duration,
-            peak_force_error: error.peak,
-            energy_error: error.energy,
         };
         let worse = match given > 0.0 {
             true => error.peak > found.peak_force_error,
             false => step < found.time_step,
         };
         if found.time_step == 0.0 || worse {
-            found = own;
+            found = StepOutcome {
+                time_step: step,
+                between: between.map(|own| scene.materials[own].clone()),
+                speed: impact.speed,
+                contact_duration: error.duration,
+                peak_force_error: error.peak,
+                energy_error: error.energy,
+            };
         }
     }
     if found.time_step == 0.0 {
@@ -313,14 +291,60 @@ pub fn time_step(plan: &mut ScenePlan) -> Result<StepOutcome, Error> {
             problem: "nothing tells a time step: give time_step",
         }));
     }
+    loop {
+        let errors = impacts.iter().map(|(_, own)| own.error_of(found.time_step));
+        let errors: Vec<StepError> = errors.collect::<Result<_, _>>().map_err(stopped)?;
+        let largest = |of: fn(&StepError) -> f64| errors.iter().map(of).fold(0.0, f64::max);
+        found.peak_force_error = largest(|own| own.peak);
+        found.energy_error = largest(|own| own.energy);
+        let most = found.peak_force_error.max(found.energy_error);
+        // Errors do not fall steadily with the step: peaks lie between its ends.
+        let shortest = found.time_step < SHORTEST * found.contact_duration;
+        if given > 0.0 || most <= plan.time_step_error || shortest {
+            break;
+        }
+        found.time_step *= SHORTER;
+    }
     plan.scene.time_step = found.time_step;
     Ok(found)
+}
+
+/// The hardest impact of two materials that a scene may see: of the smallest fruit, as fast as
+/// any can be, unless the law means nothing there.
+fn hardest<'a>(
+    scene: &Scene,
+    [a, b]: [usize; 2],
+    interaction: &'a Interaction,
+) -> Option<Impact<'a>> {
+    let smallest = |material: usize| {
+        let own = scene.fruit.iter().filter(|own| own.material == material);
+        own.min_by(|x, y| x.least_felt_mass().total_cmp(&y.least_felt_mass()))
+    };
+    // Of two fruit half the mass and half the radius move.
+    let (fruit, share) = match (smallest(a), smallest(b)) {
+        (Some(x), Some(y)) if x.least_felt_mass() < y.least_felt_mass() => (x, 0.5),
+        (Some(_), Some(y)) => (y, 0.5),
+        (Some(own), None) | (None, Some(own)) => (own, 1.0),
+        (None, None) => return None,
+    };
+    let mut impact = Impact {
+        interaction,
+        radius: share * fruit.radius,
+        mass: share * fruit.least_felt_mass(),
+        speed: fastest(scene),
+    };
+    // A wall may be faster somewhere than where fruit meet it.
+    while impact.speed > LEAST_SPEED && !impact.is_shallow() {
+        impact.speed = (0.5 * impact.speed).max(LEAST_SPEED);
+    }
+    Some(impact)
 }
 
 /// Slowest impact that a time step is chosen for; m/s.
 const LEAST_SPEED: f64 = 0.5;
 
-/// The speed that a fruit can have at most by falling through the scene, or brings along; m/s.
+/// The speed at which a fruit can strike at most, by falling through the scene, with what it
+/// brings along, and what a wall adds that comes towards it; m/s.
 fn fastest(scene: &Scene) -> f64 {
     let gravity = length(scene.gravity);
     let height = |place: [f64; 3]| -dot(scene.gravity, place) / gravity.max(f64::MIN_POSITIVE);
@@ -340,8 +364,9 @@ fn fastest(scene: &Scene) -> f64 {
     let belts = scene
         .walls
         .iter()
-        .map(|wall| length(add(wall.motion.velocity, wall.motion.surface_velocity)));
-    (fall + brought)
+        .map(|wall| length(wall.motion.surface_velocity));
+    let walls = scene.walls.iter().map(|wall| wall.largest_speed());
+    (fall + brought + walls.fold(0.0, f64::max))
         .max(belts.fold(0.0, f64::max))
         .max(LEAST_SPEED)
 }

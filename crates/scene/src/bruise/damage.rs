@@ -152,6 +152,12 @@ impl Blow {
         }
     }
 
+    /// Whether the areas of contact of two blows on a fruit overlap.
+    fn overlaps(&self, other: &Self) -> bool {
+        let apart = dot(self.spot, other.spot).clamp(-1.0, 1.0).acos();
+        apart < self.angle + other.angle
+    }
+
     fn predictor(&self, which: Predictor) -> f64 {
         match which {
             Predictor::AbsorbedEnergy => self.absorbed_energy,
@@ -227,36 +233,43 @@ impl BruiseModel {
         }
     }
 
-    /// Bruises of a fruit. Contacts whose areas overlap are on one spot.
+    /// Bruises of a fruit. Blows whose areas overlap are on one spot, and so are those that each
+    /// overlap with a third.
     pub fn bruises(&self, blows: &[Blow]) -> Vec<Bruise> {
-        let mut found: Vec<(Bruise, f64, f64)> = Vec::new();
+        // Blows of each spot, with their volumes.
+        let mut spots: Vec<Vec<(usize, f64)>> = Vec::new();
         for (contact, blow) in blows.iter().enumerate() {
             let volume = self.volume(blow);
             if volume <= 0.0 {
                 continue;
             }
-            let before = found.iter_mut().find(|(bruise, angle, _)| {
-                dot(bruise.spot, blow.spot).clamp(-1.0, 1.0).acos() < angle.max(blow.angle)
+            let overlaps = |other: &(usize, f64)| blow.overlaps(&blows[other.0]);
+            let mut joined = vec![(contact, volume)];
+            spots.retain_mut(|spot| {
+                let one = spot.iter().any(overlaps);
+                if one {
+                    joined.append(spot);
+                }
+                !one
             });
-            let Some((bruise, angle, most)) = before else {
-                let bruise = Bruise {
-                    volume,
-                    spot: blow.spot,
-                    contact,
-                };
-                found.push((bruise, blow.angle, volume));
-                continue;
-            };
-            bruise.volume = match self.same_spot {
-                SameSpot::Largest => bruise.volume.max(volume),
-                SameSpot::Sum => bruise.volume + volume,
-            };
-            if volume > *most {
-                (bruise.contact, *most) = (contact, volume);
-            }
-            *angle = angle.max(blow.angle);
+            joined.sort_unstable_by_key(|own| own.0);
+            spots.push(joined);
         }
-        found.into_iter().map(|(bruise, ..)| bruise).collect()
+        spots.sort_unstable_by_key(|spot| spot[0].0);
+        let bruise = |spot: &Vec<(usize, f64)>| {
+            let worst = spot
+                .iter()
+                .fold(spot[0], |a, b| if b.1 > a.1 { *b } else { a });
+            Bruise {
+                volume: match self.same_spot {
+                    SameSpot::Largest => worst.1,
+                    SameSpot::Sum => spot.iter().map(|own| own.1).sum(),
+                },
+                spot: blows[spot[0].0].spot,
+                contact: worst.0,
+            }
+        };
+        spots.iter().map(bruise).collect()
     }
 
     /// Volume of the largest bruise of a fruit; m³.
@@ -448,6 +461,11 @@ mod tests {
         least_volume: 0.0,
     };
 
+    const SUM: BruiseModel = BruiseModel {
+        same_spot: SameSpot::Sum,
+        ..MODEL
+    };
+
     fn blow(energy: f64, spot: Vector) -> Blow {
         Blow {
             spot,
@@ -475,12 +493,26 @@ mod tests {
         };
         // 3 mm³/mJ above 50 mJ: 30 and 150 on one spot, 300 on another.
         assert_eq!(volumes(&MODEL), [150.0, 300.0]);
-        let sum = BruiseModel {
-            same_spot: SameSpot::Sum,
-            ..MODEL
+        assert_eq!(volumes(&SUM), [180.0, 300.0]);
+        assert_eq!(SUM.bruises(&blows)[0].contact, 2);
+    }
+
+    #[test]
+    fn areas_that_touch_a_third_are_one_bruise() {
+        let at = |angle: f64| [angle.sin(), 0.0, angle.cos()];
+        // Each covers 0.2 rad around it.
+        let blows = [0.0, 0.39, 0.78, 1.2].map(|angle| blow(0.1, at(angle)));
+        let volumes = |blows: &[Blow]| {
+            let bruises = SUM.bruises(blows);
+            bruises
+                .iter()
+                .map(|own| (1e9 * own.volume).round())
+                .collect::<Vec<_>>()
         };
-        assert_eq!(volumes(&sum), [180.0, 300.0]);
-        assert_eq!(sum.bruises(&blows)[0].contact, 2);
+        assert_eq!(volumes(&blows), [450.0, 150.0]);
+        // In any order.
+        let [a, b, c, d] = blows;
+        assert_eq!(volumes(&[c, d, a, b]), [450.0, 150.0]);
     }
 
     #[test]

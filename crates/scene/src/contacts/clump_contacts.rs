@@ -5,15 +5,19 @@
 //! the contact, and hands it on when another one does.
 
 use crate::contacts::contact::{
-    Moment, Outcome, Parcel, encounter, event, event_of_pair, parted, spot, too_deep,
+    Moment, Outcome, Over, Parcel, encounter, parted, spot, too_deep, turn,
 };
 use crate::contacts::neighbours::Bodies;
 use crate::contacts::pair_contacts::LARGEST_OVERLAP;
-use crate::contacts::react::{Clock, Remembered, Touch, given, normal_of, react, surface_velocity};
+use crate::contacts::react::{
+    Clock, Remembered, Touch, direction_before, given, normal_of, react, surface_motion,
+};
 use crate::contacts::store::Load;
-use crate::contacts::wall_contacts::{DEEPEST, NearPart, SAME_CONTACT, WallState, find_hits};
+use crate::contacts::wall_contacts::{
+    DEEPEST, Flying, NearPart, SAME_CONTACT, WallState, find_hits,
+};
 use crate::error::{Error, fruit_name};
-use crate::event::Partner;
+use crate::event::{Encounter, Partner};
 use crate::interaction::Interaction;
 use crate::line::HalfLine;
 use crate::shape::surface::Closest;
@@ -139,12 +143,12 @@ impl ClumpContacts {
         self.walls.entry(fruit).or_default().contacts.push(own);
     }
 
-    /// What contacts remember that are still there, with the fruit and what they touch.
-    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, Partner, Parcel)> + '_ {
+    /// Contacts that are still there, with the fruit and what they touch.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (u32, Partner, &Touching)> {
         let pairs = self.touching_pairs();
-        let pairs = pairs.map(|([a, b], own)| (a, Partner::Fruit(b), own.parcel));
+        let pairs = pairs.map(|([a, b], own)| (a, Partner::Fruit(b), own));
         let walls = self.touching_walls();
-        pairs.chain(walls.map(|(fruit, own)| (fruit, Partner::Wall(own.wall), own.own.parcel)))
+        pairs.chain(walls.map(|(fruit, own)| (fruit, Partner::Wall(own.wall), &own.own)))
     }
 
     /// Adds the forces of all to the loads of bodies, one step on; the work of walls, J.
@@ -197,30 +201,49 @@ fn spot_on(bodies: &Bodies, body: usize, normal: Vector) -> Vector {
 }
 
 impl Touching {
-    /// Force and moment against rolling on the first body, one step on.
+    /// Force and moment against rolling on the first body, one step on; with the loads that are
+    /// over although the contact lasts.
+    ///
+    /// * `encounter`: how they touch now
     fn push(
         &mut self,
         surface: &Interaction,
         touch: &Touch<f64>,
         clock: Clock,
-    ) -> (Vector, Vector) {
+        encounter: impl FnOnce() -> Encounter,
+    ) -> (Vector, Vector, Option<Over>) {
         let Parcel {
             history,
             peaks,
             annuli,
             rolling,
+            pulse,
+            encounter: began,
             ..
         } = &mut self.parcel;
         let [d, v, peak] = given(touch, history.rate, peaks.displacement);
         let found = with_law!(&self.law, law => normal_of(law, d, v, peak));
         let own = Remembered {
-            memory: history,
-            peaks,
+            memory: &mut *history,
+            peaks: &mut *peaks,
             annuli: &mut annuli.0[..surface.annuli],
             rolling: surface.rolls().then_some(rolling),
         };
         let reaction = react(found, surface, touch, clock, own);
-        (reaction.force, reaction.rolling)
+        let (now, law) = ((clock.time, touch.displacement), self.law);
+        let over = match reaction.turned > 0.0 {
+            true => turn(history, peaks, pulse, began, || law, now),
+            false => None,
+        };
+        if over.is_some() {
+            let own = encounter();
+            *began = Encounter {
+                time: pulse.rise.time,
+                normal_speed: own.normal_speed.max(0.0),
+                ..own
+            };
+        }
+        (reaction.force, reaction.rolling, over)
     }
 }
 
@@ -242,7 +265,8 @@ impl FruitPair {
             if let Some(own) = self.contact.take() {
                 let fruit = (bodies.fruit[i], bodies.fruit[j]);
                 let parted = parted(own.parcel, -depth, now.clock);
-                outcome.events.push(event_of_pair(parted, fruit, false));
+                let over = Over::of(&parted, &own.law, false);
+                outcome.events.extend(over.of_pair(fruit));
             }
             return Ok(());
         }
@@ -253,32 +277,43 @@ impl FruitPair {
             return Err(too_deep(now.clock.time, fruit, partner, depth, a.min(b)));
         }
         let between = subtract(centre(bodies, j), centre(bodies, i));
-        let normal = scaled(between, 1.0 / length(between));
+        let distance = length(between);
+        let normal = scaled(between, 1.0 / distance);
         let ((u, p), (w, q)) = (motion(bodies, i), motion(bodies, j));
         let (near, far) = (a - 0.5 * depth, b - 0.5 * depth);
         let arms = add(scaled(p, near), scaled(q, far));
+        let relative = subtract(u, w);
+        let before = direction_before((between, distance), relative, now.clock.step);
+        let (rate, slip) = surface_motion(relative, arms, before);
         let touch = Touch {
             normal,
             displacement: depth,
-            velocity: surface_velocity(subtract(u, w), arms, normal),
+            rate,
+            slip,
             spin: subtract(p, q),
             radius: effective_radius(a, b),
         };
         let surface = (around.surface)(bodies.material[i], bodies.material[j]);
+        let met = || Encounter {
+            place: plus_scaled(centre(bodies, i), normal, near),
+            spot: spot_on(bodies, i, normal),
+            other_spot: spot_on(bodies, j, scaled(normal, -1.0)),
+            ..encounter(&touch, now.clock)
+        };
         let own = match &mut self.contact {
             Some(own) => own,
             none => {
                 let draws = |body: usize| &now.fruit[bodies.fruit[body] as usize].draws;
                 let law = surface.law_of(touch.radius, draws(i), Some(draws(j)))?;
-                let mut encounter = encounter(normal, depth, touch.velocity, now.clock);
-                encounter.place = plus_scaled(centre(bodies, i), normal, near);
-                encounter.spot = spot_on(bodies, i, normal);
-                encounter.other_spot = spot_on(bodies, j, scaled(normal, -1.0));
-                let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
+                let scale = surface.scale(touch.radius);
+                let parcel = Parcel::begin(scale, &law, &touch, now.clock, met());
                 none.insert(Touching { law, parcel })
             }
         };
-        let (force, rolling) = own.push(surface, &touch, now.clock);
+        let (force, rolling, over) = own.push(surface, &touch, now.clock, met);
+        let fruit = (bodies.fruit[i], bodies.fruit[j]);
+        let over = over.into_iter().flat_map(|own| own.of_pair(fruit));
+        outcome.events.extend(over);
         let twist = cross(normal, force);
         add_load(&mut loads[i], force, add(scaled(twist, near), rolling));
         let (force, rolling) = (scaled(force, -1.0), scaled(rolling, -1.0));
@@ -348,12 +383,24 @@ impl NearWalls {
                 let partner = around.walls.name_of(hit.wall);
                 return Err(too_deep(now.clock.time, fruit, partner, hit.depth, radius));
             }
-            let (touch, wall_velocity) = hit.touch(around.walls, bodies);
+            let (velocity, spin) = motion(bodies, hit.body);
+            let at = Flying {
+                centre: centre(bodies, hit.body),
+                radius,
+                velocity,
+                spin,
+            };
+            let walls = around.walls;
+            let (touch, wall_velocity) = walls.meet(hit.facet, &hit.closest, &at, now.clock.step);
             let mut own = match before.iter().position(goes_on) {
                 Some(place) => before.remove(place),
                 None => hit.begin(surface, &touch, bodies, now)?,
             };
-            let (force, rolling) = own.own.push(surface, &touch, now.clock);
+            let met = || hit.met(&touch, bodies, now.clock);
+            let (force, rolling, over) = own.own.push(surface, &touch, now.clock, met);
+            let partner = Partner::Wall(hit.wall);
+            let over = over.into_iter().flat_map(|own| own.with(fruit, partner));
+            outcome.events.extend(over);
             let mean = scaled(add(own.force, force), 0.5);
             work += dot(mean, wall_velocity) * now.clock.step;
             (own.force, own.normal) = (force, touch.normal);
@@ -365,31 +412,21 @@ impl NearWalls {
             // How far it is away is not looked for: the force was small already.
             let parcel = parted(own.own.parcel, 0.0, now.clock);
             let partner = Partner::Wall(own.wall);
-            outcome.events.push(event(&parcel, fruit, partner, false));
+            let over = Over::of(&parcel, &own.own.law, false);
+            outcome.events.extend(over.with(fruit, partner));
         }
         Ok(work)
     }
 }
 
 impl Hit {
-    /// How the sphere and the wall meet, and the velocity of the wall there.
-    fn touch(&self, walls: &WallState, bodies: &Bodies) -> (Touch<f64>, Vector) {
-        let Closest { point, normal, .. } = self.closest;
-        let (velocity, spin) = motion(bodies, self.body);
-        let wall_velocity = walls.velocity(self.wall, point, normal);
-        let relative = subtract(velocity, wall_velocity);
-        let arm = self.closest.distance;
-        let (radius, at) = (bodies.place[self.body][3], centre(bodies, self.body));
-        let touch = Touch {
-            normal,
-            displacement: self.depth,
-            velocity: surface_velocity(relative, scaled(spin, arm), normal),
-            spin,
-            radius: walls.facets[self.facet as usize]
-                .1
-                .effective_radius(radius, at),
-        };
-        (touch, wall_velocity)
+    /// How they touch now, as a beginning.
+    fn met(&self, touch: &Touch<f64>, bodies: &Bodies, clock: Clock) -> Encounter {
+        Encounter {
+            place: self.closest.point,
+            spot: spot_on(bodies, self.body, touch.normal),
+            ..encounter(touch, clock)
+        }
     }
 
     fn begin(
@@ -400,11 +437,15 @@ impl Hit {
         now: &Moment,
     ) -> Result<TouchingWall, Error> {
         let draws = &now.fruit[bodies.fruit[self.body] as usize].draws;
-        let mut encounter = encounter(touch.normal, self.depth, touch.velocity, now.clock);
-        encounter.place = self.closest.point;
-        encounter.spot = spot_on(bodies, self.body, touch.normal);
-        let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
         let law = surface.law_of(touch.radius, draws, None)?;
+        let scale = surface.scale(touch.radius);
+        let parcel = Parcel::begin(
+            scale,
+            &law,
+            touch,
+            now.clock,
+            self.met(touch, bodies, now.clock),
+        );
         Ok(TouchingWall {
             wall: self.wall,
             normal: touch.normal,

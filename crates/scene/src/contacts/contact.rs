@@ -1,13 +1,15 @@
 //! One contact from its beginning to its event, whatever it is with.
 
 use crate::annuli::Annuli;
-use crate::contacts::react::{Clock, History, Peaks};
+use crate::binary;
+use crate::contacts::memory::{History, Peaks};
+use crate::contacts::pulse::{Load, Mark, Pulse, Watched};
+use crate::contacts::react::{Clock, Touch, first_weight, stored_energy};
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
 use crate::scene::Fruit;
-use crate::vector::{
-    Rotation, Vector, dot, length, plus_scaled, scaled, subtract, turned_back, unit,
-};
+use crate::vector::{Rotation, Vector, dot, length, plus_scaled, scaled, turned_back, unit};
+use windfall_contact::laws::kind::Law;
 
 /// What every contact of a step needs to know.
 #[derive(Clone, Copy)]
@@ -35,15 +37,37 @@ pub(crate) struct Parcel {
     /// Moment against rolling on the first body; N m.
     pub rolling: Vector,
     pub encounter: Encounter,
+    pub pulse: Pulse,
 }
+
+binary!(Parcel {
+    scale,
+    history,
+    peaks,
+    annuli,
+    rolling,
+    encounter,
+    pulse
+});
 
 impl Parcel {
     /// A contact that begins.
-    pub(crate) fn begin(scale: f64, clock: Clock, encounter: Encounter) -> Self {
+    ///
+    /// * `touch`: at the end of the step of first touch
+    /// * `law`: with the fruit's own parameters
+    pub(crate) fn begin(
+        scale: f64,
+        law: &Law,
+        touch: &Touch<f64>,
+        clock: Clock,
+        encounter: Encounter,
+    ) -> Self {
         Self {
             scale,
             history: History {
-                rate: encounter.normal_speed,
+                // So that the first rate taken on from here is that along the normal of now.
+                rate: touch.rate - 2.0 * dot(touch.slip, touch.normal),
+                normal: -first_weight(law, touch, clock.step),
                 ..History::default()
             },
             peaks: Peaks {
@@ -53,6 +77,13 @@ impl Parcel {
             annuli: Annuli::default(),
             rolling: [0.0; 3],
             encounter,
+            pulse: Pulse {
+                last: Mark {
+                    time: encounter.time,
+                    ..Mark::default()
+                },
+                ..Pulse::default()
+            },
         }
     }
 
@@ -65,6 +96,7 @@ impl Parcel {
             annuli: self.annuli.swapped(),
             rolling: scaled(self.rolling, -1.0),
             encounter: self.encounter.swapped(),
+            pulse: self.pulse,
         }
     }
 }
@@ -84,14 +116,13 @@ pub(crate) fn too_deep(time: f64, fruit: u32, partner: String, overlap: f64, rad
 }
 
 /// How a contact begins; place and spots are the caller's.
-pub(crate) fn encounter(
-    normal: Vector,
-    displacement: f64,
-    velocity: Vector,
-    clock: Clock,
-) -> Encounter {
-    let rate = dot(velocity, normal);
-    let slip = subtract(velocity, scaled(normal, rate));
+pub(crate) fn encounter(touch: &Touch<f64>, clock: Clock) -> Encounter {
+    let &Touch {
+        displacement,
+        rate,
+        slip,
+        ..
+    } = touch;
     // First touch lies within the step.
     let since = match rate > 0.0 {
         true => (displacement / rate).min(clock.step),
@@ -141,32 +172,127 @@ pub(crate) fn lasting(mut parcel: Parcel, last: f64) -> Parcel {
     parcel
 }
 
-/// The event of two fruit; the lower number first.
-pub(crate) fn event_of_pair(parcel: Parcel, (first, second): (u32, u32), lasting: bool) -> Event {
-    let parcel = match second < first {
-        true => parcel.swapped(),
-        false => parcel,
-    };
-    let partner = Partner::Fruit(first.max(second));
-    event(&parcel, first.min(second), partner, lasting)
+/// Loads that are over, as the first body sees them.
+pub(crate) struct Over {
+    pub encounter: Encounter,
+    /// Loads of the contact before.
+    pub before: u32,
+    pub pulse: Load,
+    pub rest: Option<Load>,
+    /// Whether the last of them was still there when the scene ended.
+    pub lasting: bool,
 }
 
-pub(crate) fn event(parcel: &Parcel, fruit: u32, partner: Partner, lasting: bool) -> Event {
-    let (history, peaks, encounter) = (&parcel.history, &parcel.peaks, &parcel.encounter);
-    Event {
-        fruit,
-        partner,
-        time: encounter.time,
-        duration: peaks.ended - encounter.time,
-        lasting,
-        place: encounter.place,
-        spot: encounter.spot,
-        other_spot: encounter.other_spot,
-        normal_speed: encounter.normal_speed,
-        tangential_speed: encounter.tangential_speed,
-        peak_force: peaks.force,
-        largest_displacement: peaks.displacement,
-        absorbed_energy: history.work,
-        friction_energy: history.friction_work,
+impl Over {
+    /// What is left of a contact when it ends.
+    ///
+    /// * `law`: of this contact
+    pub(crate) fn of(parcel: &Parcel, law: &Law, lasting: bool) -> Self {
+        let (history, peaks) = (&parcel.history, &parcel.peaks);
+        let end = Mark {
+            time: peaks.ended,
+            force: history.normal,
+            displacement: peaks.reach,
+            work: history.work,
+            friction_work: history.friction_work,
+        };
+        let most = [peaks.force, peaks.reach];
+        let stored = |depth: f64| stored_energy(law, depth, peaks.displacement);
+        let began = parcel.encounter.time;
+        let (pulse, rest) = parcel.pulse.parts(began, (end, 0.0), most, &stored);
+        Self {
+            encounter: parcel.encounter,
+            before: parcel.pulse.number,
+            pulse,
+            rest,
+            lasting,
+        }
     }
+
+    /// As events of two fruit; the lower number first.
+    pub(crate) fn of_pair(mut self, (first, second): (u32, u32)) -> impl Iterator<Item = Event> {
+        if second < first {
+            self.encounter = self.encounter.swapped();
+        }
+        let partner = Partner::Fruit(first.max(second));
+        self.with(first.min(second), partner)
+    }
+
+    /// As events of a fruit with its partner.
+    pub(crate) fn with(self, fruit: u32, partner: Partner) -> impl Iterator<Item = Event> {
+        let loads = [Some(self.pulse), self.rest].into_iter().flatten();
+        let last = usize::from(self.rest.is_some());
+        let encounter = self.encounter;
+        let speed = |load: &Load, own: f64| if load.resting { 0.0 } else { own };
+        loads.enumerate().map(move |(place, load)| Event {
+            fruit,
+            partner,
+            time: load.began,
+            duration: load.ended - load.began,
+            lasting: self.lasting && place == last,
+            number: self.before + 1 + place as u32,
+            resting: load.resting,
+            width: load.fell - load.began,
+            place: encounter.place,
+            spot: encounter.spot,
+            other_spot: encounter.other_spot,
+            normal_speed: speed(&load, encounter.normal_speed),
+            tangential_speed: speed(&load, encounter.tangential_speed),
+            peak_force: load.force,
+            largest_displacement: load.displacement,
+            absorbed_energy: load.work,
+            friction_energy: load.friction_work,
+        })
+    }
+}
+
+/// A contact whose speed grows so many times from first touch on is pushed by others; 1.
+const PUSHED: f64 = 1.5;
+
+/// A force leaves its band; the loads that are over.
+///
+/// * `encounter`: of the present pulse; `law`: of this contact
+pub(crate) fn turn(
+    history: &mut History,
+    peaks: &mut Peaks<f64>,
+    pulse: &mut Pulse,
+    encounter: &mut Encounter,
+    law: impl Fn() -> Law,
+    (time, displacement): (f64, f64),
+) -> Option<Over> {
+    let now = Mark {
+        time,
+        force: history.normal,
+        displacement,
+        work: history.work,
+        friction_work: history.friction_work,
+    };
+    let (before, began) = (pulse.number, *encounter);
+    let deepest = peaks.displacement;
+    let watched = Watched {
+        peak: [peaks.force, peaks.reach],
+        above: peaks.above,
+        stored: &|depth| stored_energy(&law(), depth, deepest),
+    };
+    let turn = pulse.turn(encounter.time, now, &watched);
+    [peaks.below, peaks.above] = turn.band;
+    if turn.anew {
+        (peaks.force, peaks.reach) = (now.force, displacement);
+    }
+    let grows = pulse.number > 0 || history.rate >= PUSHED * encounter.normal_speed;
+    if grows && !pulse.fallen {
+        // A later pulse is as fast as it is while its force grows, and so is a first one that
+        // others push on from behind.
+        encounter.normal_speed = encounter.normal_speed.max(history.rate);
+    }
+    let (load, rest) = turn.over?;
+    history.work -= pulse.rise.work;
+    history.friction_work -= pulse.rise.friction_work;
+    Some(Over {
+        encounter: began,
+        before,
+        pulse: load,
+        rest,
+        lasting: false,
+    })
 }

@@ -1,13 +1,12 @@
 //! Contacts of two fruit, compiled once for each law.
 
-use crate::contacts::contact::{
-    Moment, Outcome, Parcel, encounter, event_of_pair, parted, spot, too_deep,
-};
+use crate::contacts::contact::{Moment, Outcome, Over, Parcel, encounter, parted, spot, too_deep};
 use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::pair_forces::{Batch, Pair};
-use crate::contacts::react::surface_velocity;
-use crate::contacts::store::{Load, Store};
+use crate::contacts::react::{Clock, Touch, direction_before, surface_motion};
+use crate::contacts::store::{Load, Store, Turning};
 use crate::error::{Error, fruit_name};
+use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::vector::{dot, length, plus_scaled, scaled, subtract};
 use windfall_contact::effective::effective_radius;
@@ -42,8 +41,9 @@ pub(crate) struct PairContacts {
     awake: Vec<Awake>,
     /// Those that cannot before bodies have moved by half their gap; the widest first.
     asleep: Vec<(f64, u32)>,
-    /// Contacts that end in the present step.
+    /// Contacts that end in the present step, and those whose force leaves its band.
     parting: Vec<u32>,
+    turning: Vec<Turning>,
 }
 
 /// An entry and its bodies, from the first of the block on.
@@ -69,6 +69,7 @@ impl PairContacts {
             awake: Vec::new(),
             asleep: Vec::with_capacity(entries - room),
             parting: Vec::new(),
+            turning: Vec::new(),
         }
     }
 
@@ -98,6 +99,7 @@ impl PairContacts {
             return;
         }
         let mut parting = std::mem::take(&mut self.parting);
+        let mut turning = std::mem::take(&mut self.turning);
         let deepest = with_four_lanes(Batch {
             bodies: &bodies,
             store: &mut self.store,
@@ -105,6 +107,7 @@ impl PairContacts {
             loads,
             outs: &mut *outs,
             parting: &mut parting,
+            turning: &mut turning,
             surface,
             clock: now.clock,
         });
@@ -113,6 +116,15 @@ impl PairContacts {
                 .problem
                 .get_or_insert_with(|| self.deepest(&bodies, now));
         }
+        for own in turning.drain(..) {
+            if let Some(over) = self.store.turn(own, now.clock) {
+                let pair = self.pairs[own.0 as usize].bodies;
+                let (_, encounter) = met(pair, &bodies, now.clock);
+                self.store.begin_again(own.0, encounter);
+                outcome.events.extend(over.of_pair(fruit_of(pair, &bodies)));
+            }
+        }
+        self.turning = turning;
         for contact in parting.drain(..) {
             let pair = self.finish(contact as usize, &bodies, now, outcome);
             if let Some(out) = outs.get_mut(pair.out as usize) {
@@ -214,26 +226,15 @@ impl PairContacts {
     ) -> Result<(), Error> {
         let [i, j] = pair.bodies.map(|body| body as usize);
         let draws = |body: usize| &now.fruit[bodies.fruit[body] as usize].draws;
-        let centre = |body: usize| [0, 1, 2].map(|axis| bodies.place[body][axis]);
-        let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
-        let radius = effective_radius(a, b);
-        let displacement = bodies.overlap(pair.bodies);
-        let between = subtract(centre(j), centre(i));
-        let normal = scaled(between, 1.0 / length(between));
-        let (u, w) = (&bodies.motion[i], &bodies.motion[j]);
-        let relative = [u[0] - w[0], u[1] - w[1], u[2] - w[2]];
-        let arms = [4, 5, 6].map(|at| a * u[at] + b * w[at]);
-        let velocity = surface_velocity(relative, arms, normal);
-        let mut encounter = encounter(normal, displacement, velocity, now.clock);
-        encounter.place = plus_scaled(centre(i), normal, a - 0.5 * displacement);
-        let spot = |body: usize, normal| {
-            let radius = bodies.place[body][3];
-            spot(bodies.turn[body], bodies.offset_of(body), radius, normal)
-        };
-        encounter.spot = spot(i, normal);
-        encounter.other_spot = spot(j, scaled(normal, -1.0));
-        let parcel = Parcel::begin(surface.scale(radius), now.clock, encounter);
-        let law = surface.law_of(radius, draws(i), Some(draws(j)))?;
+        let (touch, encounter) = met(pair.bodies, bodies, now.clock);
+        let law = surface.law_of(touch.radius, draws(i), Some(draws(j)))?;
+        let parcel = Parcel::begin(
+            surface.scale(touch.radius),
+            &law,
+            &touch,
+            now.clock,
+            encounter,
+        );
         self.adopt(entry, pair, &law, parcel);
         Ok(())
     }
@@ -269,14 +270,53 @@ impl PairContacts {
         outcome: &mut Outcome,
     ) -> Pair {
         let pair = self.pairs[contact].bodies;
-        let [i, j] = pair.map(|body| body as usize);
         let gap = -bodies.overlap(pair);
-        let parted = parted(self.store.parcel(contact), gap, now.clock);
-        let fruit = (bodies.fruit[i], bodies.fruit[j]);
-        outcome.events.push(event_of_pair(parted, fruit, false));
+        let (law, parcel) = self.store.at(contact);
+        let over = Over::of(&parted(parcel, gap, now.clock), &law, false);
+        outcome.events.extend(over.of_pair(fruit_of(pair, bodies)));
         self.store.remove(contact);
         let entry = self.entries.swap_remove(contact);
         self.awake.push(Awake { entry, pair });
         self.pairs.swap_remove(contact)
     }
+}
+
+/// The fruit of two bodies.
+fn fruit_of(pair: [u32; 2], bodies: &BodiesFrom) -> (u32, u32) {
+    let [i, j] = pair.map(|body| bodies.fruit[body as usize]);
+    (i, j)
+}
+
+/// How two bodies touch now, as a beginning.
+fn met(pair: [u32; 2], bodies: &BodiesFrom, clock: Clock) -> (Touch<f64>, Encounter) {
+    let [i, j] = pair.map(|body| body as usize);
+    let centre = |body: usize| [0, 1, 2].map(|axis| bodies.place[body][axis]);
+    let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
+    let radius = effective_radius(a, b);
+    let displacement = bodies.overlap(pair);
+    let between = subtract(centre(j), centre(i));
+    let distance = length(between);
+    let normal = scaled(between, 1.0 / distance);
+    let (u, w) = (&bodies.motion[i], &bodies.motion[j]);
+    let relative = [u[0] - w[0], u[1] - w[1], u[2] - w[2]];
+    let arms = [4, 5, 6].map(|at| a * u[at] + b * w[at]);
+    let before = direction_before((between, distance), relative, clock.step);
+    let (rate, slip) = surface_motion(relative, arms, before);
+    let touch = Touch {
+        normal,
+        displacement,
+        rate,
+        slip,
+        spin: [4, 5, 6].map(|at| u[at] - w[at]),
+        radius,
+    };
+    let mut encounter = encounter(&touch, clock);
+    encounter.place = plus_scaled(centre(i), normal, a - 0.5 * displacement);
+    let spot = |body: usize, normal| {
+        let radius = bodies.place[body][3];
+        spot(bodies.turn[body], bodies.offset_of(body), radius, normal)
+    };
+    encounter.spot = spot(i, normal);
+    encounter.other_spot = spot(j, scaled(normal, -1.0));
+    (touch, encounter)
 }

@@ -2,8 +2,8 @@
 
 use crate::contacts::law_column::Four;
 use crate::contacts::neighbours::BodiesFrom;
-use crate::contacts::react::{Clock, Normal, Touch, surface_velocity};
-use crate::contacts::store::{CHUNK, Load, Store, add_load, loads};
+use crate::contacts::react::{Clock, Normal, Touch, direction_before, surface_motion};
+use crate::contacts::store::{CHUNK, Load, Store, Turning, add_load, loads};
 use crate::interaction::Interaction;
 use crate::vector::dot;
 use windfall_numerics::prefetch::prefetch;
@@ -32,6 +32,8 @@ pub(crate) struct Batch<'a> {
     pub outs: &'a mut [Load],
     /// Contacts whose bodies do not touch any more: for the caller, in falling order.
     pub parting: &'a mut Vec<u32>,
+    /// Contacts whose force has left its band.
+    pub turning: &'a mut Vec<Turning>,
     pub surface: &'a Interaction,
     pub clock: Clock,
 }
@@ -48,11 +50,12 @@ impl FourLanes for Batch<'_> {
         let mut given = [[Lanes::ZERO; 3]; CHUNK];
         let mut found = [Normal::all(Lanes::ZERO); CHUNK];
         let groups = batch.pairs.len().div_ceil(LANES);
+        let step = batch.clock.step;
         for first in (0..groups).step_by(CHUNK) {
             let count = CHUNK.min(groups - first);
             batch.prefetch(first + CHUNK);
             for own in 0..count {
-                let meeting = meet(batch.bodies, batch.pairs_of(first + own), zero);
+                let meeting = meet(batch.bodies, batch.pairs_of(first + own), step, zero);
                 let touch = &meeting.touch;
                 deepest = deepest.max(touch.displacement / meeting.smaller);
                 given[own] = batch.store.given(first + own, touch, zero);
@@ -131,9 +134,13 @@ impl Batch<'_> {
                 self.parting.push((start + lane) as u32);
             }
         }
+        let Lanes(turned) = reaction.turned.plain();
         for lane in 0..count {
             if !together && parted[lane] {
                 continue;
+            }
+            if turned[lane] > 0.0 {
+                self.turning.push(((start + lane) as u32, overlap[lane]));
             }
             let Pair { bodies, out } = self.pairs[start + lane];
             let [first, second] = bodies;
@@ -186,7 +193,12 @@ fn half(row: &Load, at: usize) -> Four {
 }
 
 #[inline(always)]
-fn meet<R: FourNumbers>(bodies: &BodiesFrom, pairs: [[u32; 2]; LANES], zero: R) -> Meeting<R> {
+fn meet<R: FourNumbers>(
+    bodies: &BodiesFrom,
+    pairs: [[u32; 2]; LANES],
+    step: f64,
+    zero: R,
+) -> Meeting<R> {
     let (places, motions) = (bodies.place, bodies.motion);
     let i = [pairs[0][0], pairs[1][0], pairs[2][0], pairs[3][0]];
     let j = [pairs[0][1], pairs[1][1], pairs[2][1], pairs[3][1]];
@@ -223,11 +235,14 @@ fn meet<R: FourNumbers>(bodies: &BodiesFrom, pairs: [[u32; 2]; LANES], zero: R) 
         near * p[1] + far * q[1],
         near * p[2] + far * q[2],
     ];
+    let before = direction_before((between, distance), relative, step);
+    let (rate, slip) = surface_motion(relative, arms, before);
     Meeting {
         touch: Touch {
             normal,
             displacement,
-            velocity: surface_velocity(relative, arms, normal),
+            rate,
+            slip,
             spin: [p[0] - q[0], p[1] - q[1], p[2] - q[2]],
             radius: left * right / reach,
         },

@@ -2,10 +2,13 @@
 //! For one contact or for several side by side: numbers are any [`Real`].
 
 use crate::annuli::{Shear, slide};
+use crate::contacts::memory::{Memory, Peaks};
 use crate::interaction::Interaction;
 use crate::vector::{Of, add, cross, dot, into_plane, less, scaled, stretch_into_plane};
 use windfall_contact::law::ContactLaw;
-use windfall_numerics::real::{Lanes, Real};
+use windfall_contact::laws::kind::Law;
+use windfall_contact::with_law;
+use windfall_numerics::real::Real;
 
 /// Two bodies where they touch.
 #[derive(Clone, Copy, Debug)]
@@ -14,8 +17,10 @@ pub(crate) struct Touch<R> {
     pub normal: Of<R>,
     /// How far the undeformed surfaces overlap, d; m.
     pub displacement: R,
-    /// Velocity of the first body's surface relative to the second's, half a step ago; m/s.
-    pub velocity: Of<R>,
+    /// Rate of the displacement half a step ago; m/s.
+    pub rate: R,
+    /// Velocity of the first body's surface along the second's, half a step ago; m/s.
+    pub slip: Of<R>,
     /// Angular velocity of the first relative to the second, half a step ago; rad/s.
     pub spin: Of<R>,
     /// R*; m.
@@ -29,199 +34,10 @@ impl<R: Copy> Touch<R> {
         Self {
             normal: [number; 3],
             displacement: number,
-            velocity: [number; 3],
+            rate: number,
+            slip: [number; 3],
             spin: [number; 3],
             radius: number,
-        }
-    }
-}
-
-/// What a contact remembers that changes in every step; of numbers or of several side by side.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Memory<R> {
-    /// Tangential force on the first body; N.
-    pub tangential: [R; 3],
-    /// Tangential stiffness; N/m.
-    pub stiffness: R,
-    /// Normal force; N.
-    pub normal: R,
-    /// Rate of the displacement half a step ago; m/s.
-    pub rate: R,
-    /// Work of the bodies on the normal contact; J.
-    pub work: R,
-    /// Work of the bodies on friction and rolling; J.
-    pub friction_work: R,
-}
-
-/// What a contact remembers that seldom changes, and is written only then.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Peaks<R> {
-    /// Largest displacement; m.
-    pub displacement: R,
-    /// Largest normal force; N.
-    pub force: R,
-    /// Last time with a force, while there is none; s.
-    pub ended: R,
-}
-
-impl<R: Real> Peaks<R> {
-    /// As numbers without a processor's instructions.
-    #[inline(always)]
-    pub(crate) fn plain(self) -> Peaks<R::Plain> {
-        Peaks {
-            displacement: self.displacement.plain(),
-            force: self.force.plain(),
-            ended: self.ended.plain(),
-        }
-    }
-
-    /// Above zero where any of them is later or larger than it was.
-    #[inline(always)]
-    pub(crate) fn growth_from(&self, before: &Self) -> R {
-        let grown = (self.displacement - before.displacement).max(self.force - before.force);
-        grown.max(self.ended - before.ended)
-    }
-}
-
-impl<const W: usize> Peaks<Lanes<W>> {
-    /// Nothing remembered.
-    pub(crate) const ZERO: Self = Self {
-        displacement: Lanes::ZERO,
-        force: Lanes::ZERO,
-        ended: Lanes::ZERO,
-    };
-
-    /// As numbers like `like`.
-    #[inline(always)]
-    pub(crate) fn with_plain<R: Real<Plain = Lanes<W>>>(self, like: R) -> Peaks<R> {
-        Peaks {
-            displacement: like.with_plain(self.displacement),
-            force: like.with_plain(self.force),
-            ended: like.with_plain(self.ended),
-        }
-    }
-
-    /// One of several side by side.
-    pub(crate) fn lane(&self, lane: usize) -> Peaks<f64> {
-        Peaks {
-            displacement: self.displacement.0[lane],
-            force: self.force.0[lane],
-            ended: self.ended.0[lane],
-        }
-    }
-
-    /// Puts one among several.
-    pub(crate) fn put_lane(&mut self, lane: usize, own: &Peaks<f64>) {
-        self.displacement.0[lane] = own.displacement;
-        self.force.0[lane] = own.force;
-        self.ended.0[lane] = own.ended;
-    }
-}
-
-/// A memory of which each field comes of the same field of another.
-macro_rules! memory {
-    ($own:expr, $vector:ident, $number:ident) => {
-        Memory {
-            tangential: $vector!($own.tangential),
-            stiffness: $number!($own.stiffness),
-            normal: $number!($own.normal),
-            rate: $number!($own.rate),
-            work: $number!($own.work),
-            friction_work: $number!($own.friction_work),
-        }
-    };
-}
-
-impl<R: Real> Memory<R> {
-    /// As numbers without a processor's instructions.
-    #[inline(always)]
-    pub(crate) fn plain(self) -> Memory<R::Plain> {
-        macro_rules! vector {
-            ($own:expr) => {
-                [$own[0].plain(), $own[1].plain(), $own[2].plain()]
-            };
-        }
-        macro_rules! number {
-            ($own:expr) => {
-                $own.plain()
-            };
-        }
-        memory!(self, vector, number)
-    }
-}
-
-impl<const W: usize> Memory<Lanes<W>> {
-    /// Nothing remembered.
-    pub(crate) const ZERO: Self = {
-        macro_rules! vector {
-            ($own:expr) => {
-                [Lanes::ZERO; 3]
-            };
-        }
-        macro_rules! number {
-            ($own:expr) => {
-                Lanes::ZERO
-            };
-        }
-        memory!((), vector, number)
-    };
-
-    /// As numbers like `like`.
-    #[inline(always)]
-    pub(crate) fn with_plain<R: Real<Plain = Lanes<W>>>(self, like: R) -> Memory<R> {
-        macro_rules! vector {
-            ($own:expr) => {
-                like.with_each_plain($own)
-            };
-        }
-        macro_rules! number {
-            ($own:expr) => {
-                like.with_plain($own)
-            };
-        }
-        memory!(self, vector, number)
-    }
-
-    /// One of several side by side.
-    pub(crate) fn lane(&self, lane: usize) -> History {
-        macro_rules! vector {
-            ($own:expr) => {
-                $own.map(|own| own.0[lane])
-            };
-        }
-        macro_rules! number {
-            ($own:expr) => {
-                $own.0[lane]
-            };
-        }
-        memory!(self, vector, number)
-    }
-
-    /// Puts one among several.
-    pub(crate) fn put_lane(&mut self, lane: usize, history: &History) {
-        let mut all = *self;
-        macro_rules! put {
-            ($($field:ident)*) => {
-                $(all.$field.0[lane] = history.$field;)*
-            };
-        }
-        put!(stiffness normal rate work friction_work);
-        for axis in 0..3 {
-            all.tangential[axis].0[lane] = history.tangential[axis];
-        }
-        *self = all;
-    }
-}
-
-/// The memory of one contact.
-pub type History = Memory<f64>;
-
-impl History {
-    /// The same contact seen from the second body.
-    pub(crate) fn swapped(self) -> Self {
-        Self {
-            tangential: self.tangential.map(|own| -own),
-            ..self
         }
     }
 }
@@ -243,6 +59,8 @@ pub(crate) struct Reaction<R> {
     pub force: Of<R>,
     /// Moment besides that of the force; N m.
     pub rolling: Of<R>,
+    /// Above zero where the normal force has left its band; N.
+    pub turned: R,
 }
 
 /// The normal force of a contact, as friction needs it.
@@ -292,7 +110,12 @@ pub(crate) struct Clock {
     pub time: f64,
     /// Time step; s.
     pub step: f64,
+    /// Whether loads that last are looked at in it.
+    pub looks: bool,
 }
+
+/// Steps between looks at loads that last.
+pub(crate) const LOOK: u64 = 64;
 
 /// Displacement, its rate and the largest so far, for which the law is asked: the rate at the
 /// end of the step is taken on from the last two half steps, so that damping has the
@@ -301,9 +124,55 @@ pub(crate) struct Clock {
 /// * `rate`, `peak`: as the contact remembers them
 #[inline(always)]
 pub(crate) fn given<R: Real>(touch: &Touch<R>, rate: R, peak: R) -> Of<R> {
-    let now = dot(touch.velocity, touch.normal);
-    [touch.displacement, now * 1.5 - rate * 0.5, peak]
+    [touch.displacement, touch.rate * 1.5 - rate * 0.5, peak]
 }
+
+/// What the force at the end of the step of first touch weighs, so that the impulse of its damping
+/// is that from first touch to the half step after it; 1. Damping that sets in at once, or as a
+/// root, would otherwise act up to half a step too long or too short. The elastic part stays as
+/// it is: weighed, it would not conserve energy over many contacts.
+///
+/// * `touch`: at the end of that step
+pub(crate) fn first_weight(law: &Law, touch: &Touch<f64>, step: f64) -> f64 {
+    let &Touch {
+        displacement, rate, ..
+    } = touch;
+    let force = |displacement: f64, rate: f64| with_law!(law, law => normal_of(law, displacement, rate, displacement).force);
+    let damping = |displacement: f64| force(displacement, rate) - force(displacement, 0.0);
+    let now = force(displacement, rate);
+    let end = displacement + 0.5 * rate * step;
+    // A little more where they touched just as the step began.
+    let touched = rate > 0.0 && now > 0.0 && displacement <= 1.001 * rate * step;
+    if !touched {
+        return 1.0;
+    }
+    // Of squares: forces begin with half powers of the displacement.
+    let terms = NODES.map(|(node, weight)| 2.0 * weight * node * damping(end * node * node));
+    let mean = terms.iter().sum::<f64>() * end / (rate * step);
+    1.0 + (mean - damping(displacement)) / now
+}
+
+/// Elastic energy of a contact: what it gives back on its way from a displacement, m; J.
+///
+/// * `deepest`: the largest displacement so far; m
+pub(crate) fn stored_energy(law: &Law, displacement: f64, deepest: f64) -> f64 {
+    let force = |displacement: f64| {
+        with_law!(law, law => normal_of(law, displacement, 0.0, deepest).force).max(0.0)
+    };
+    let terms = NODES.map(|(node, weight)| 2.0 * weight * node * force(displacement * node * node));
+    terms.iter().sum::<f64>() * displacement
+}
+
+/// Nodes and weights of Gauss and Legendre's quadrature from 0 to 1.
+///
+/// # Source
+/// Abramowitz and Stegun (1964), table 25.4, n = 4.
+const NODES: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_9),
+    (0.330_009_478_207_571_9, 0.326_072_577_431_273_1),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_1),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_9),
+];
 
 /// Force of a contact, one step on.
 ///
@@ -335,28 +204,40 @@ pub(crate) fn react<R: Real>(
     let &Touch {
         normal,
         displacement,
-        velocity,
+        rate,
+        slip,
         ..
     } = touch;
     let zero = displacement.constant(0.0);
     let now = displacement.constant(clock.time);
-    let rate = dot(velocity, normal);
     let force = found.force.max(zero);
+    // Part of the step that the force acts in before now: half of it, but of first touch.
+    let late = (-memory.normal).select(-memory.normal + -0.5, zero + 0.5);
+    let before = memory.normal.max(zero);
     // Where the force ended within the step.
-    let since = found.force / (found.force - memory.normal);
-    let ended = memory.normal.select(now - since * clock.step, peaks.ended);
+    let since = found.force / (found.force - before);
+    let ended = before.select(now - since * clock.step, peaks.ended);
     peaks.ended = force.select(peaks.ended, ended);
-    memory.work = memory.work + (memory.normal + force) * rate * (0.5 * clock.step);
+    memory.work = memory.work + (before * 0.5 + force * late) * rate * clock.step;
     memory.rate = rate;
     memory.normal = force;
     peaks.displacement = peaks.displacement.max(displacement);
     peaks.force = peaks.force.max(force);
+    peaks.reach = peaks.reach.max(displacement);
+    let seldom = if clock.looks {
+        -peaks.below
+    } else {
+        zero + -1.0
+    };
+    let half = (-peaks.below).select(seldom, peaks.force * 0.5);
+    let below = peaks.below.select(peaks.below, half);
     let mut reaction = Reaction {
         force: scaled(normal, -force),
         rolling: [zero; 3],
+        turned: (below - force).max(force - peaks.above),
     };
     if surface.friction > 0.0 {
-        let slip = less(velocity, normal, rate);
+        let slip = less(slip, normal, dot(slip, normal));
         let shear = Shear {
             limit: force * surface.friction,
             damping: found.damping.max(zero) * surface.tangential_damping,
@@ -366,8 +247,8 @@ pub(crate) fn react<R: Real>(
         let growth = before.select(shear.stiffness / before, zero + 1.0);
         memory.stiffness = shear.stiffness;
         let whole = slide(annuli, normal, slip, shear, growth, clock.step);
-        let both = add(memory.tangential, whole);
-        memory.friction_work = memory.friction_work - dot(both, slip) * (0.5 * clock.step);
+        let both = less(scaled(memory.tangential, zero + 0.5), whole, -late);
+        memory.friction_work = memory.friction_work - dot(both, slip) * clock.step;
         memory.tangential = whole;
         reaction.force = add(reaction.force, whole);
         if let Some(moment) = rolling {
@@ -375,6 +256,7 @@ pub(crate) fn react<R: Real>(
             reaction.rolling = roll(touch, limit, clock, memory, moment);
         }
     }
+    reaction.force = scaled(reaction.force, late + 0.5);
     reaction
 }
 
@@ -402,10 +284,31 @@ fn roll<R: Real>(
     moment
 }
 
-/// Velocity of a body's surface where it touches, relative to another's.
+/// Direction from one centre to another half a step ago; length 1 but for a square of the step.
+/// The rate of the distance along it is that of the whole step.
 ///
-/// * `arms`: spins times their distances to the contact, added: l₁ω₁ + l₂ω₂; m/s
+/// * `between`: from the first to the second now, with its length; m
+/// * `relative`: velocity of the first relative to the second, half a step ago; m/s
 #[inline(always)]
-pub(crate) fn surface_velocity<R: Real>(relative: Of<R>, arms: Of<R>, normal: Of<R>) -> Of<R> {
-    add(relative, cross(arms, normal))
+pub(crate) fn direction_before<R: Real>(
+    (between, distance): (Of<R>, R),
+    relative: Of<R>,
+    step: f64,
+) -> Of<R> {
+    let one = distance.constant(1.0);
+    let before = less(between, relative, -one * step);
+    let middle = less(between, relative, -one * (0.5 * step));
+    scaled(middle, one * 2.0 / (distance + dot(before, before).sqrt()))
+}
+
+/// How two surfaces move where they touch: rate of the displacement, and velocity of the first
+/// along the second; m/s.
+///
+/// * `relative`: velocity of the first body relative to the second; m/s
+/// * `arms`: spins times their distances to the contact, added: l₁ω₁ + l₂ω₂; m/s
+/// * `normal`: from the first to the second; length 1
+#[inline(always)]
+pub(crate) fn surface_motion<R: Real>(relative: Of<R>, arms: Of<R>, normal: Of<R>) -> (R, Of<R>) {
+    let rate = dot(relative, normal);
+    (rate, add(less(relative, normal, rate), cross(arms, normal)))
 }

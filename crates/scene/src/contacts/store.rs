@@ -1,11 +1,11 @@
 //! What contacts remember, four side by side.
 
 use crate::annuli::Annuli;
-use crate::contacts::contact::Parcel;
+use crate::contacts::contact::{Over, Parcel, turn};
 use crate::contacts::law_column::{Four, Given, LawColumn, law_column};
-use crate::contacts::react::{
-    Clock, Memory, Normal, Peaks, Reaction, Remembered, Touch, given, react,
-};
+use crate::contacts::memory::{Memory, Peaks};
+use crate::contacts::pulse::Pulse;
+use crate::contacts::react::{Clock, Normal, Reaction, Remembered, Touch, given, react};
 use crate::event::Encounter;
 use crate::interaction::Interaction;
 use crate::line::Line;
@@ -48,7 +48,11 @@ pub(crate) struct Store {
     rolls: bool,
     laws: Box<dyn LawColumn>,
     encounters: Vec<Encounter>,
+    pulses: Vec<Pulse>,
 }
+
+/// A contact whose force has left its band, with its displacement; m.
+pub(crate) type Turning = (u32, f64);
 
 impl Store {
     /// No contacts yet of an interaction, with room for so many.
@@ -62,6 +66,7 @@ impl Store {
             rolls: surface.rolls(),
             laws: law_column(&surface.law, room),
             encounters: Vec::with_capacity(room),
+            pulses: Vec::with_capacity(room),
         }
     }
 
@@ -88,6 +93,7 @@ impl Store {
             self.elastic.resize(elastic, [Lanes::ZERO; 3]);
         }
         self.encounters.push(parcel.encounter);
+        self.pulses.push(parcel.pulse);
         self.put(own, &parcel);
         Some(own as u32)
     }
@@ -110,6 +116,7 @@ impl Store {
                 None => [0.0; 3],
             },
             encounter: self.encounters[contact],
+            pulse: self.pulses[contact],
         }
     }
 
@@ -120,6 +127,7 @@ impl Store {
         self.put(contact, &moved);
         self.laws.swap_remove(contact);
         self.encounters.swap_remove(contact);
+        self.pulses.swap_remove(contact);
         if last.is_multiple_of(LANES) {
             self.quads.pop();
             self.rolling.pop();
@@ -172,6 +180,36 @@ impl Store {
                 self.put(group * LANES + lane, &before[lane]);
             }
         }
+    }
+
+    /// The force of a contact has left its band; the loads that are over.
+    #[cold]
+    pub(crate) fn turn(&mut self, (contact, displacement): Turning, clock: Clock) -> Option<Over> {
+        let contact = contact as usize;
+        let (quad, lane) = (&mut self.quads[contact / LANES], contact % LANES);
+        let mut history = quad.history.lane(lane);
+        let mut peaks = quad.peaks.lane(lane);
+        let pulse = &mut self.pulses[contact];
+        let now = (clock.time, displacement);
+        let laws = &self.laws;
+        let encounter = &mut self.encounters[contact];
+        let law = || laws.at(contact);
+        let over = turn(&mut history, &mut peaks, pulse, encounter, law, now);
+        quad.peaks.put_lane(lane, &peaks);
+        if over.is_some() {
+            quad.history.put_lane(lane, &history);
+        }
+        over
+    }
+
+    /// A later pulse of a contact began.
+    pub(crate) fn begin_again(&mut self, contact: u32, encounter: Encounter) {
+        let contact = contact as usize;
+        self.encounters[contact] = Encounter {
+            time: self.pulses[contact].rise.time,
+            normal_speed: encounter.normal_speed.max(0.0),
+            ..encounter
+        };
     }
 
     /// Asks for the memory of a group that is soon to be worked through.

@@ -1,17 +1,17 @@
 //! Contacts of a fruit with walls.
 
-use crate::contacts::contact::{Moment, Outcome, Parcel, encounter, event, parted, spot, too_deep};
+use crate::contacts::contact::{Moment, Outcome, Over, Parcel, encounter, parted, spot, too_deep};
 use crate::contacts::mesh_contacts::thin;
-use crate::contacts::react::{Touch, surface_velocity};
+use crate::contacts::react::{Clock, Touch, surface_motion};
 use crate::contacts::store::NONE;
 use crate::contacts::wall_forces::{WallContacts, WallMeeting};
 use crate::error::Error;
-use crate::event::Partner;
+use crate::event::{Encounter, Partner};
 use crate::interaction::Interaction;
 use crate::shape::facet_tree::FacetTree;
 use crate::shape::surface::{Closest, Facet, Shape};
 use crate::shape::wall::{Placed, Wall};
-use crate::vector::{Rotation, Vector, dot, length, scaled, subtract};
+use crate::vector::{Rotation, Vector, dot, length, plus_scaled, scaled, subtract};
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
 
@@ -131,13 +131,60 @@ impl WallState {
         }
     }
 
-    pub(crate) fn velocity(&self, wall: u32, place: Vector, normal: Vector) -> Vector {
+    /// How a sphere and a part of a wall meet, and the velocity of the wall where they met half
+    /// a step ago; m/s.
+    ///
+    /// * `closest`: point of the part now
+    pub(crate) fn meet(
+        &self,
+        facet: u32,
+        closest: &Closest,
+        body: &Flying,
+        step: f64,
+    ) -> (Touch<f64>, Vector) {
+        let (wall, part) = &self.facets[facet as usize];
+        let centre = plus_scaled(body.centre, body.velocity, -0.5 * step);
+        let before = match (
+            &self.placed[*wall as usize],
+            closest.inside && part.is_flat(),
+        ) {
+            (None, true) => *closest,
+            // Of the same plane, even where the fruit has just come over its edge.
+            (Some((now, before)), true) => now.carried(closest, before, centre),
+            (placed, false) => part.closest(placed.as_ref().map(|(_, before)| before), centre),
+        };
+        let wall_velocity = self.velocity(*wall, before.point, before.normal);
+        let relative = subtract(body.velocity, wall_velocity);
+        let arms = scaled(body.spin, before.distance);
+        let (rate, slip) = surface_motion(relative, arms, before.normal);
+        let touch = Touch {
+            normal: closest.normal,
+            displacement: body.radius - closest.distance,
+            rate,
+            slip,
+            spin: body.spin,
+            radius: part.effective_radius(body.radius, body.centre),
+        };
+        (touch, wall_velocity)
+    }
+
+    fn velocity(&self, wall: u32, place: Vector, normal: Vector) -> Vector {
         match (&self.placed[wall as usize], &self.belts[wall as usize]) {
             (Some((_, before)), _) => before.velocity_at(place, normal),
             (None, Some(belt)) => belt.velocity_at(place, normal),
             (None, None) => [0.0; 3],
         }
     }
+}
+
+/// A sphere and how it moves.
+pub(crate) struct Flying {
+    pub centre: Vector,
+    pub radius: f64,
+    /// Half a step ago; m/s.
+    pub velocity: Vector,
+    /// Half a step ago; rad/s.
+    pub spin: Vector,
 }
 
 /// A fruit that may touch walls.
@@ -182,6 +229,12 @@ pub(crate) fn aim<'a>(
 ) {
     let (walls, now) = (around.walls, around.now);
     let &Body { centre, radius, .. } = body;
+    let at = Flying {
+        centre,
+        radius,
+        velocity: body.velocity,
+        spin: body.spin,
+    };
     find_hits(walls, &near[around.near.clone()], centre, radius, hits);
     let own = around.near.clone();
     if hits.is_empty() && near[own].iter().all(|part| part.slot == NONE) {
@@ -189,19 +242,10 @@ pub(crate) fn aim<'a>(
     }
     follow(near, around, hits, body, stores, outcome);
     for &(facet, closest) in hits.iter() {
-        let (wall, part) = &walls.facets[facet as usize];
-        let (interaction, surface) = (around.surface)(*wall);
-        let displacement = radius - closest.distance;
-        let arm = closest.distance;
-        let wall_velocity = walls.velocity(*wall, closest.point, closest.normal);
-        let relative = subtract(body.velocity, wall_velocity);
-        let touch = Touch {
-            normal: closest.normal,
-            displacement,
-            velocity: surface_velocity(relative, scaled(body.spin, arm), closest.normal),
-            spin: body.spin,
-            radius: part.effective_radius(radius, centre),
-        };
+        let wall = walls.facets[facet as usize].0;
+        let (interaction, surface) = (around.surface)(wall);
+        let (touch, wall_velocity) = walls.meet(facet, &closest, &at, now.clock.step);
+        let displacement = touch.displacement;
         let Some(place) = around
             .near
             .clone()
@@ -210,7 +254,7 @@ pub(crate) fn aim<'a>(
             continue;
         };
         if near[place].slot == NONE {
-            match begin(surface, &touch, closest.point, now, body) {
+            match begin(surface, &touch, now, body) {
                 Ok((law, parcel)) => {
                     let holder = [owner, place as u32];
                     near[place].slot = stores[interaction].adopt(holder, &law, parcel, [0.0; 3]);
@@ -221,7 +265,7 @@ pub(crate) fn aim<'a>(
                 }
             }
         }
-        let meeting = WallMeeting::new(&touch, arm, wall_velocity);
+        let meeting = WallMeeting::new(&touch, closest.distance, wall_velocity);
         stores[interaction].aim(near[place].slot, meeting);
         // Also where the distance is no number.
         let shallow = displacement <= DEEPEST * radius;
@@ -230,7 +274,7 @@ pub(crate) fn aim<'a>(
                 too_deep(
                     now.clock.time,
                     *body.fruit,
-                    walls.name_of(*wall),
+                    walls.name_of(wall),
                     displacement,
                     radius,
                 )
@@ -338,31 +382,52 @@ fn follow<'a>(
             stores[interaction].hold(slot, next as u32);
             continue;
         }
-        let (_, parcel, _) = stores[interaction].at(slot);
+        let (law, parcel, _) = stores[interaction].at(slot);
         if let Some(moved) = stores[interaction].remove(slot) {
             near[moved as usize].slot = slot;
         }
         let gap = walls.closest(facet, body.centre).distance - body.radius;
         let parcel = parted(parcel, gap.max(0.0), around.now.clock);
         let partner = Partner::Wall(wall);
-        outcome
-            .events
-            .push(event(&parcel, *body.fruit, partner, false));
+        let over = Over::of(&parcel, &law, false);
+        outcome.events.extend(over.with(*body.fruit, partner));
     }
 }
 
 fn begin(
     surface: &Interaction,
     touch: &Touch<f64>,
-    point: Vector,
     now: &Moment,
     body: &Body,
 ) -> Result<(Law, Parcel), Error> {
     let draws = &now.fruit[*body.fruit as usize].draws;
-    let mut encounter = encounter(touch.normal, touch.displacement, touch.velocity, now.clock);
-    encounter.place = point;
-    let offset = (*body.clump.0 != NONE).then_some(*body.clump.1);
-    encounter.spot = spot(*body.turn, offset, body.radius, touch.normal);
-    let parcel = Parcel::begin(surface.scale(touch.radius), now.clock, encounter);
-    Ok((surface.law_of(touch.radius, draws, None)?, parcel))
+    let (turn, clump) = (*body.turn, (*body.clump.0, *body.clump.1));
+    let encounter = met_wall(touch, (body.centre, body.radius), (turn, clump), now.clock);
+    let law = surface.law_of(touch.radius, draws, None)?;
+    let parcel = Parcel::begin(
+        surface.scale(touch.radius),
+        &law,
+        touch,
+        now.clock,
+        encounter,
+    );
+    Ok((law, parcel))
+}
+
+/// How a sphere touches a wall now, as a beginning.
+///
+/// * `turn`, `clump`: of the fruit; the clump that the sphere belongs to, or [`NONE`], and where
+///   in it, m
+pub(crate) fn met_wall(
+    touch: &Touch<f64>,
+    (centre, radius): (Vector, f64),
+    (turn, (clump, offset)): (Rotation, (u32, Vector)),
+    clock: Clock,
+) -> Encounter {
+    let offset = (clump != NONE).then_some(offset);
+    Encounter {
+        place: plus_scaled(centre, touch.normal, radius - touch.displacement),
+        spot: spot(turn, offset, radius, touch.normal),
+        ..encounter(touch, clock)
+    }
 }

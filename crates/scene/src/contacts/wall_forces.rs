@@ -3,15 +3,16 @@
 use crate::contacts::contact::Parcel;
 use crate::contacts::law_column::Four;
 use crate::contacts::react::{Clock, Normal, Touch};
-use crate::contacts::store::{CHUNK, Load, NONE, Store, add_load, loads};
+use crate::contacts::store::{CHUNK, Load, NONE, Store, Turning, add_load, loads};
+use crate::event::{Encounter, Event, Partner};
 use crate::interaction::Interaction;
 use crate::vector::Vector;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
 
-/// How a fruit and a wall meet, in rows: normal and displacement, relative velocity and R*,
-/// spin and distance of the contact from the centre, velocity of the wall.
+/// How a fruit and a wall meet, in rows: normal and displacement, slip and R*, spin and distance
+/// of the contact from the centre, velocity of the wall and rate of the displacement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallMeeting([Four; 4]);
 
@@ -21,14 +22,32 @@ impl WallMeeting {
         let row = |[x, y, z]: Vector, last: f64| Lanes([x, y, z, last]);
         Self([
             row(touch.normal, touch.displacement),
-            row(touch.velocity, touch.radius),
+            row(touch.slip, touch.radius),
             row(touch.spin, arm),
-            row(wall_velocity, 0.0),
+            row(wall_velocity, touch.rate),
         ])
     }
 
     pub(crate) fn rows(&self) -> [[f64; 4]; 4] {
         self.0.map(|Lanes(row)| row)
+    }
+
+    /// How they touch; without spin.
+    fn touch(&self) -> Touch<f64> {
+        let [
+            [x, y, z, displacement],
+            [u, v, w, radius],
+            _,
+            [_, _, _, rate],
+        ] = self.rows();
+        Touch {
+            normal: [x, y, z],
+            displacement,
+            rate,
+            slip: [u, v, w],
+            spin: [0.0; 3],
+            radius,
+        }
     }
 
     /// Of rows as [`WallMeeting::rows`] gives them.
@@ -51,6 +70,8 @@ pub(crate) struct WallContacts {
     meetings: Vec<WallMeeting>,
     /// Force on the fruit a step ago; N.
     forces: Vec<Four>,
+    /// Those whose force leaves its band in the present step.
+    turning: Vec<Turning>,
 }
 
 impl WallContacts {
@@ -61,6 +82,7 @@ impl WallContacts {
             holders: Vec::new(),
             meetings: Vec::new(),
             forces: Vec::new(),
+            turning: Vec::new(),
         }
     }
 
@@ -136,6 +158,29 @@ impl WallContacts {
         })
     }
 
+    /// Loads that are over because the force of their contact has left its band.
+    ///
+    /// * `met`: how a body of the block and a part of a wall meet now, as a beginning; with the
+    ///   fruit and its partner
+    pub(crate) fn turn(
+        &mut self,
+        clock: Clock,
+        met: impl Fn([u32; 2], Touch<f64>) -> (Encounter, u32, Partner),
+        events: &mut Vec<Event>,
+    ) {
+        let mut turning = std::mem::take(&mut self.turning);
+        for own in turning.drain(..) {
+            if let Some(over) = self.store.turn(own, clock) {
+                let slot = own.0 as usize;
+                let touch = self.meetings[slot].touch();
+                let (encounter, fruit, partner) = met(self.holders[slot], touch);
+                self.store.begin_again(own.0, encounter);
+                events.extend(over.with(fruit, partner));
+            }
+        }
+        self.turning = turning;
+    }
+
     /// How a group meets walls; the last group is filled up with its last contact.
     #[inline(always)]
     fn meet<R: FourNumbers>(&self, group: usize, zero: R) -> Meeting<R> {
@@ -150,11 +195,12 @@ impl WallContacts {
         let [x, y, z, displacement] = zero.columns(rows[0]);
         let [u, v, w, radius] = zero.columns(rows[1]);
         let [p, q, r, arm] = zero.columns(rows[2]);
-        let [a, b, c, _] = zero.columns(rows[3]);
+        let [a, b, c, rate] = zero.columns(rows[3]);
         let touch = Touch {
             normal: [x, y, z],
             displacement,
-            velocity: [u, v, w],
+            rate,
+            slip: [u, v, w],
             spin: [p, q, r],
             radius,
         };
@@ -232,6 +278,7 @@ impl Batch<'_> {
             store,
             holders,
             forces,
+            turning,
             ..
         } = &mut *self.contacts;
         let Meeting { touch, arm, wall } = meeting;
@@ -249,7 +296,11 @@ impl Batch<'_> {
         }
         let Lanes(mut work) = (power * (0.5 * self.clock.step)).plain();
         work[count..].fill(0.0);
+        let (Lanes(turned), Lanes(depth)) = (reaction.turned.plain(), touch.displacement.plain());
         for lane in 0..count {
+            if turned[lane] > 0.0 {
+                turning.push(((start + lane) as u32, depth[lane]));
+            }
             forces[start + lane] = force[lane];
             let body = holders[start + lane][0] as usize;
             add_load(&mut self.loads[body], &force[lane], &moment[lane]);

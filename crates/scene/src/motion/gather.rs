@@ -3,10 +3,12 @@
 use crate::contacts::contact::{Moment, Outcome};
 use crate::contacts::law_column::Four;
 use crate::contacts::neighbours::PairTable;
+use crate::contacts::react::Touch;
 use crate::contacts::store::Load;
-use crate::contacts::wall_contacts::{Around, Body, NearPart, WallState, aim};
+use crate::contacts::wall_contacts::{Around, Body, NearPart, WallState, aim, met_wall};
 use crate::contacts::wall_forces::WallContacts;
 use crate::error::Error;
+use crate::event::Partner;
 use crate::interaction::Interaction;
 use crate::line::{HalfLine, Line};
 use crate::scene::Scene;
@@ -90,6 +92,7 @@ impl Gather<'_> {
         for (own, surface) in block.wall_contacts.iter_mut().zip(self.surfaces) {
             sums.walls += own.advance(block.loads, surface, now.clock);
         }
+        self.turn(&mut block, now, &mut outcome);
         self.take_in(&mut block);
         let of_clumps = self.clump_loads.iter().skip(block.start);
         for (load, own) in block.loads.iter_mut().zip(of_clumps) {
@@ -185,6 +188,23 @@ impl Gather<'_> {
             let stores = &mut *block.wall_contacts;
             let near = &mut *block.near;
             aim(near, own as u32, &body, &around, stores, &mut hits, outcome);
+        }
+    }
+
+    /// Loads by walls that are over although their contact lasts.
+    fn turn(&self, block: &mut BlockBodies, now: &Moment, outcome: &mut Outcome) {
+        let (place, turn, near) = (&*block.place, &*block.turn, &*block.near);
+        let met = |[own, part]: [u32; 2], touch: Touch<f64>| {
+            let body = block.start + own as usize;
+            let HalfLine([x, y, z, radius]) = place[own as usize];
+            let clump = (self.clumps.0[body], self.clumps.1[body]);
+            let turn = turn[own as usize];
+            let encounter = met_wall(&touch, ([x, y, z], radius), (turn, clump), now.clock);
+            let wall = self.walls.facets[near[part as usize].facet as usize].0;
+            (encounter, self.bodies.0[body], Partner::Wall(wall))
+        };
+        for own in block.wall_contacts.iter_mut() {
+            own.turn(now.clock, met, &mut outcome.events);
         }
     }
 

@@ -265,11 +265,12 @@ impl Simulation {
     }
 
     /// Bodies that touch walls, which, and what the contacts remember.
-    pub(crate) fn touched_walls(&self) -> impl Iterator<Item = (usize, u32, Parcel)> + '_ {
+    pub(crate) fn touched_walls(&self) -> impl Iterator<Item = (usize, u32, Law, Parcel)> + '_ {
         self.touched_parts().map(|(body, part, stores)| {
             let store = &stores[self.interaction_with(body, part.facet)];
             let wall = self.walls.facets[part.facet as usize].0;
-            (body, wall, store.at(part.slot).1)
+            let (law, parcel, _) = store.at(part.slot);
+            (body, wall, law, parcel)
         })
     }
 

@@ -1,11 +1,11 @@
 //! A scene from step to step.
 
 use crate::contacts::clump_contacts::{self, ClumpContacts};
-use crate::contacts::contact::{Moment, Outcome, event, event_of_pair, lasting};
+use crate::contacts::contact::{Moment, Outcome, Over, lasting};
 use crate::contacts::law_column::Four;
 use crate::contacts::neighbours::{Bodies, PairTable};
 use crate::contacts::pair_contacts::PairContacts;
-use crate::contacts::react::Clock;
+use crate::contacts::react::{Clock, LOOK};
 use crate::contacts::store::{Load, NONE};
 use crate::contacts::wall_contacts::{NearPart, WallState};
 use crate::contacts::wall_forces::WallContacts;
@@ -17,6 +17,8 @@ use crate::line::HalfLine;
 use crate::motion::clump_motion::{Around, ClumpState};
 use crate::motion::gather::{Loads, Sums, Swept};
 use crate::scene::Scene;
+use crate::shape::surface::Shape;
+use crate::shape::wall::Wall;
 use crate::vector::{Rotation, Vector};
 
 /// A scene that runs.
@@ -125,17 +127,10 @@ impl Simulation {
                 .position(|own| *own == key)
                 .unwrap_or(usize::MAX)
         };
-        let wall_speed = scene.walls.iter().map(|wall| {
-            let pivot = wall.motion.rotation.map_or([0.0; 3], |own| own.point);
-            let reach = wall.shape.reach(pivot);
-            // Planes are always looked at.
-            if reach.is_finite() {
-                wall.motion.largest_speed(reach)
-            } else {
-                0.0
-            }
-        });
-        let wall_speed = wall_speed.fold(0.0, f64::max);
+        // Planes are always looked at.
+        let planes = |own: &&Wall| !matches!(own.shape, Shape::Plane { .. });
+        let wall_speeds = scene.walls.iter().filter(planes).map(Wall::largest_speed);
+        let wall_speed = wall_speeds.fold(0.0, f64::max);
         Ok(Self {
             surfaces: scene.interactions.values().cloned().collect(),
             numbers: (0..materials * materials).map(number).collect(),
@@ -241,26 +236,27 @@ impl Simulation {
         for (parts, contacts) in self.table.blocks.iter().zip(&self.contacts) {
             for ((_, range), contacts) in parts.iter().zip(contacts) {
                 for (contact, &entry) in contacts.entries().iter().enumerate() {
-                    let (_, parcel) = contacts.at(contact);
+                    let (law, parcel) = contacts.at(contact);
                     let entry = range.start + entry as usize;
                     let fruit = |body: u32| self.bodies.fruit[body as usize];
                     let pair = (
                         fruit(self.table.first[entry]),
                         fruit(self.table.second[entry]),
                     );
-                    events.push(event_of_pair(lasting(parcel, last), pair, true));
+                    events.extend(Over::of(&lasting(parcel, last), &law, true).of_pair(pair));
                 }
             }
         }
-        for (body, wall, parcel) in self.touched_walls() {
+        for (body, wall, law, parcel) in self.touched_walls() {
             let fruit = self.bodies.fruit[body];
             let partner = Partner::Wall(wall);
-            events.push(event(&lasting(parcel, last), fruit, partner, true));
+            events.extend(Over::of(&lasting(parcel, last), &law, true).with(fruit, partner));
         }
-        for (fruit, partner, parcel) in self.clump_contacts.all() {
-            events.push(event(&lasting(parcel, last), fruit, partner, true));
+        for (fruit, partner, own) in self.clump_contacts.all() {
+            let over = Over::of(&lasting(own.parcel, last), &own.law, true);
+            events.extend(over.with(fruit, partner));
         }
-        events.sort_by_key(|event| (event.fruit, event.partner));
+        events.sort_by_key(|event| (event.fruit, event.partner, event.number));
         events
     }
 
@@ -299,7 +295,8 @@ impl Simulation {
         }
         let (time, step) = (self.time(), self.scene.time_step);
         self.walls.move_to(&self.scene.walls, time, step);
-        let clock = Clock { time, step };
+        let looks = self.steps.is_multiple_of(LOOK);
+        let clock = Clock { time, step, looks };
         let of_clumps = self.push_clump_contacts(clock);
         let swept = self.sweep(clock, with_energy);
         self.end(of_clumps)?;
@@ -411,13 +408,13 @@ impl Simulation {
                 energy.in_friction += parcel.history.friction_work;
             }
         }
-        for (_, _, parcel) in self.touched_walls() {
+        for (_, _, _, parcel) in self.touched_walls() {
             energy.in_contacts += parcel.history.work;
             energy.in_friction += parcel.history.friction_work;
         }
-        for (_, _, parcel) in self.clump_contacts.all() {
-            energy.in_contacts += parcel.history.work;
-            energy.in_friction += parcel.history.friction_work;
+        for (_, _, own) in self.clump_contacts.all() {
+            energy.in_contacts += own.parcel.history.work;
+            energy.in_friction += own.parcel.history.friction_work;
         }
         energy.lost_in_contacts = self.account.normal;
         energy.lost_by_friction = self.account.friction;

@@ -43,27 +43,34 @@ struct Measured {
 const FINE: f64 = 1.0 / 4000.0;
 /// Longest step over the contact duration; 1. Stiffer contacts in a dense bed need room.
 const LONGEST: f64 = 1.0 / 20.0;
+/// Where in a step first touch is looked at; of the step.
+const PHASES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.95];
 /// Steps looked at, each this part of the one before.
-const SHORTER: f64 = 0.8;
+pub const SHORTER: f64 = 0.8;
 /// Shortest step over the contact duration; 1.
-const SHORTEST: f64 = 1.0 / 1000.0;
+pub const SHORTEST: f64 = 1.0 / 1000.0;
 
 impl Impact<'_> {
     /// What a step does to this impact, by the very code of scenes.
     pub fn error_of(&self, step: f64) -> Result<StepError, Error> {
-        self.error_beside(&self.measured(FINE * self.duration()?)?, step)
+        self.error_beside(&self.measured(FINE * self.duration()?, 0.5)?, step)
     }
 
-    /// What a step does to this impact.
+    /// What a step does to this impact, where first touch comes at the worst.
     ///
     /// * `fine`: the impact without error
     fn error_beside(&self, fine: &Measured, step: f64) -> Result<StepError, Error> {
-        let own = self.measured(step)?;
-        let energy = 0.5 * self.mass * self.speed * self.speed;
+        let impact_energy = 0.5 * self.mass * self.speed * self.speed;
+        let (mut peak, mut energy) = (0.0_f64, 0.0_f64);
+        for phase in PHASES {
+            let own = self.measured(step, phase)?;
+            peak = peak.max((own.peak / fine.peak - 1.0).abs());
+            energy = energy.max((own.energy - fine.energy).abs() / impact_energy);
+        }
         Ok(StepError {
             duration: fine.duration,
-            peak: (own.peak / fine.peak - 1.0).abs(),
-            energy: (own.energy - fine.energy).abs() / energy,
+            peak,
+            energy,
         })
     }
 
@@ -71,7 +78,7 @@ impl Impact<'_> {
     /// what it does.
     pub fn step_for(&self, error: f64) -> Result<(f64, StepError), Error> {
         let duration = self.duration()?;
-        let fine = self.measured(FINE * duration)?;
+        let fine = self.measured(FINE * duration, 0.5)?;
         let mut step = LONGEST * duration;
         loop {
             let found = self.error_beside(&fine, step)?;
@@ -82,18 +89,25 @@ impl Impact<'_> {
         }
     }
 
+    /// Whether the bodies do not come so close that their law means nothing.
+    pub fn is_shallow(&self) -> bool {
+        !matches!(self.duration(), Err(Error::Overlap { .. }))
+    }
+
     /// Contact duration; s.
     fn duration(&self) -> Result<f64, Error> {
         // From a guess that is far too short to one that is fine.
         let mut step = 1e-7;
         for _ in 0..3 {
-            step = 0.002 * self.measured(step)?.duration;
+            step = 0.002 * self.measured(step, 0.5)?.duration;
         }
         Ok(step / 0.002)
     }
 
     /// The impact with a time step.
-    fn measured(&self, step: f64) -> Result<Measured, Error> {
+    ///
+    /// * `phase`: of the step at first touch; 1
+    fn measured(&self, step: f64, phase: f64) -> Result<Measured, Error> {
         let wall = Wall {
             name: "wall".to_owned(),
             material: 1,
@@ -103,8 +117,7 @@ impl Impact<'_> {
             },
             motion: Motion::default(),
         };
-        // Touch comes in the middle of a step.
-        let height = self.radius + 0.5 * self.speed * step;
+        let height = self.radius + phase * self.speed * step;
         let mut fruit = Fruit::sphere(0, self.radius, 1.0, [0.0, 0.0, height]);
         fruit.mass = self.mass;
         fruit.velocity = [0.0, 0.0, -self.speed];

@@ -303,6 +303,11 @@ impl Facet {
         all
     }
 
+    /// Whether its normal is the same all over it.
+    pub(crate) fn is_flat(&self) -> bool {
+        !matches!(self, Self::Cylinder { .. })
+    }
+
     /// R* of a fruit on it; m. Edges count as flat.
     pub(crate) fn effective_radius(&self, radius: f64, centre: Vector) -> f64 {
         match *self {

@@ -19,6 +19,16 @@ pub struct Wall {
     pub motion: Motion,
 }
 
+impl Wall {
+    /// The largest speed of its points; of an endless plane without its rotation; m/s.
+    pub fn largest_speed(&self) -> f64 {
+        let pivot = self.motion.rotation.map_or([0.0; 3], |own| own.point);
+        let reach = self.shape.reach(pivot);
+        let reach = if reach.is_finite() { reach } else { 0.0 };
+        self.motion.largest_speed(reach)
+    }
+}
+
 /// Motion of a wall. Parts add up.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Motion {
@@ -104,7 +114,7 @@ impl Motion {
     }
 
     /// The largest speed of a point of the wall that is within `reach` of the pivot; m/s.
-    pub(crate) fn largest_speed(&self, reach: f64) -> f64 {
+    fn largest_speed(&self, reach: f64) -> f64 {
         let vibration = self.vibration.map_or(0.0, |own| {
             2.0 * std::f64::consts::PI * own.frequency.abs() * length(own.amplitude)
         });
@@ -130,6 +140,19 @@ impl Placed {
     pub(crate) fn outward(&self, place: Vector) -> Vector {
         let from = subtract(place, self.pivot);
         add(add(turned(self.turn, from), self.pivot), self.shift)
+    }
+
+    /// The plane through a closest point as it was, with its point closest to a place then.
+    pub(crate) fn carried(&self, closest: &Closest, before: &Self, place: Vector) -> Closest {
+        let normal = before.turned(turned_back(self.turn, closest.normal));
+        let point = before.outward(self.inward(closest.point));
+        let distance = dot(subtract(point, place), normal);
+        Closest {
+            point: plus_scaled(place, normal, distance),
+            normal,
+            distance,
+            inside: true,
+        }
     }
 
     /// Velocity of the wall's surface at a point of space, with a normal there; m/s.
