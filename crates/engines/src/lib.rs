@@ -3,11 +3,14 @@
 mod classes;
 pub mod contacts;
 mod deck;
+pub mod delivered;
 mod frames;
+mod hertz;
 mod lammps;
 mod law;
 mod liggghts;
 mod motion;
+mod pair;
 pub mod parameters;
 mod program;
 pub mod run;

@@ -1,6 +1,7 @@
 //! A deck that was written, for a terminal.
 
 use crate::contacts::ContactsOutcome;
+use crate::delivered::text_of_delivered;
 use crate::run::DeckOutcome;
 use windfall_files::text::statistic::number;
 use windfall_scene_run::file::engine_kind::Engine;
@@ -44,6 +45,10 @@ pub fn text_of_contacts(outcome: &ContactsOutcome) -> String {
             "\n{a} and {b}\n  exact: {}\n  approximate: {}\n",
             own.exact, own.approximate
         );
+        if !own.delivered.is_empty() {
+            let delivered = text_of_delivered(&own.delivered);
+            text += &format!("  restitution delivered: {delivered}\n");
+        }
     }
     text + &format!("\nWritten: {}\n", outcome.file.display())
 }

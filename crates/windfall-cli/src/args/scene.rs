@@ -63,8 +63,9 @@ pub struct SceneExportArguments {
     #[arg(long, value_enum)]
     pub engine: ExportName,
     /// For the others: impact speed in m/s at which damping that is not the law's takes as much energy
-    #[arg(long, value_name = "SPEED", default_value_t = 1.0)]
-    pub speed: f64,
+    /// [default: the middle of the range of the law's card, in all of which it must hold; 1 without a card]
+    #[arg(long, value_name = "SPEED")]
+    pub speed: Option<f64>,
     /// Directory to write into
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,

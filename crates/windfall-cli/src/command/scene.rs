@@ -43,10 +43,12 @@ fn export(arguments: &SceneExportArguments) -> anyhow::Result<()> {
         ExportName::Chrono => Other::Chrono,
     };
     let speed = arguments.speed;
-    anyhow::ensure!(
-        speed > 0.0 && speed.is_finite(),
-        "--speed {speed}: a speed above zero, in m/s"
-    );
+    if let Some(speed) = speed {
+        anyhow::ensure!(
+            speed > 0.0 && speed.is_finite(),
+            "--speed {speed}: a speed above zero, in m/s"
+        );
+    }
     let outcome = export_contacts(&arguments.file, other, arguments.out.as_deref(), speed)?;
     match arguments.format {
         Format::Json => write_json(&outcome),
