@@ -279,7 +279,7 @@ impl Pulse {
         if !self.fallen {
             return (self.load_until(began, end, most, at_end), None);
         }
-        if end.time - low.time <= REST * (self.fell - began) {
+        if end.time - self.end() <= REST * (self.fell - began) {
             return (self.load_until(began, end, self.peak, at_end), None);
         }
         let [force, displacement] = most;
@@ -433,7 +433,7 @@ mod tests {
             );
         }
         // That sets in at once and dies away.
-        let own = loads(&history(0.05, |time| 12.0 * (-time / 0.003).exp()), STEP);
+        let own = loads(&history(0.02, |time| 12.0 * (-time / 0.003).exp()), STEP);
         assert_eq!(own.len(), 1, "{own:?}");
     }
 

@@ -126,15 +126,16 @@ fn closed_form_bruises_of_a_regression_from_the_table_of_contacts() {
         codes.contains("bruise-range"),
         largest.iter().any(|own| *own > 200.0)
     );
-    // Static loads: all that lasted to the end, rests of contacts, and nothing else that was
+    // Static loads: all that lasted long to the end, rests of contacts, and nothing else that was
     // short.
-    let load = numbers(&events, "load");
+    let (load, force) = (numbers(&events, "load"), numbers(&events, "peak_force_N"));
     let duration = numbers(&events, "duration_s");
     let mut statics = 0;
     for (row, lasted) in events["static"].iter().enumerate() {
         statics += usize::from(lasted == "true");
-        let at_the_end = events["lasting"][row] == "true" && duration[row] > 0.5;
-        assert!(!at_the_end || lasted == "true");
+        // A gentle load may have fallen so slowly that what follows is no rest yet.
+        let at_the_end = events["lasting"][row] == "true" && duration[row] > 0.25;
+        assert!(!at_the_end || lasted == "true" || force[row] < 5.0, "{row}");
         let lasts = events["lasting"][row] == "true" || duration[row] > 0.02;
         assert!(lasted == "false" || lasts || load[row] > 1.0);
     }
