@@ -237,7 +237,12 @@ pub fn fruit_history(directory: &Path, fruit: u64, count: usize) -> Result<Fruit
     })
 }
 
+/// Leaves the hardest where there are many; else all in the order of the table, in which loads
+/// that begin at the same step stand.
 fn keep_hardest(told: &mut Vec<ContactView>) {
+    if told.len() <= MOST {
+        return;
+    }
     told.sort_by(|a, b| b.peak_force.total_cmp(&a.peak_force));
     told.truncate(MOST);
 }
