@@ -67,6 +67,15 @@ pub(crate) struct Encounter {
 }
 
 impl Encounter {
+    /// That of a later pulse, which began before it was seen.
+    pub(crate) fn from(self, time: f64) -> Self {
+        Self {
+            time,
+            normal_speed: self.normal_speed.max(0.0),
+            ..self
+        }
+    }
+
     pub(crate) fn swapped(self) -> Self {
         Self {
             spot: self.other_spot,

@@ -236,12 +236,7 @@ impl Touching {
             false => None,
         };
         if over.is_some() {
-            let own = encounter();
-            *began = Encounter {
-                time: pulse.rise.time,
-                normal_speed: own.normal_speed.max(0.0),
-                ..own
-            };
+            *began = encounter().from(pulse.rise.time);
         }
         (reaction.force, reaction.rolling, over)
     }

@@ -211,7 +211,7 @@ pub(crate) fn react<R: Real>(
     let zero = displacement.constant(0.0);
     let now = displacement.constant(clock.time);
     let force = found.force.max(zero);
-    // Part of the step that the force acts in before now: half of it, but of first touch.
+    // How much of a step the force acts before now: half, except at first touch.
     let late = (-memory.normal).select(-memory.normal + -0.5, zero + 0.5);
     let before = memory.normal.max(zero);
     // Where the force ended within the step.

@@ -205,11 +205,7 @@ impl Store {
     /// A later pulse of a contact began.
     pub(crate) fn begin_again(&mut self, contact: u32, encounter: Encounter) {
         let contact = contact as usize;
-        self.encounters[contact] = Encounter {
-            time: self.pulses[contact].rise.time,
-            normal_speed: encounter.normal_speed.max(0.0),
-            ..encounter
-        };
+        self.encounters[contact] = encounter.from(self.pulses[contact].rise.time);
     }
 
     /// Asks for the memory of a group that is soon to be worked through.
