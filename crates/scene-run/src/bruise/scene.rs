@@ -255,7 +255,18 @@ impl Blows {
         self.of.iter().map(|own| plan.model.bruises(own)).collect()
     }
 
-    /// Variance of the share of fruit above a limit over that of independent fruit.
+    /// Variance of the share of fruit above each limit over that of independent fruit, as pairs of
+    /// fruit show it that bruised each other.
+    ///
+    /// * `walls`: how many the scene has
+    pub fn variance_ratios(&self, walls: usize) -> Vec<f64> {
+        let all = self.bruises(&self.plan);
+        let limits = self.plan.limits.iter();
+        limits
+            .map(|limit| self.variance_ratio(&all, *limit, walls))
+            .collect()
+    }
+
     fn variance_ratio(&self, all: &[Vec<Bruise>], limit: f64, walls: usize) -> f64 {
         let bad: Vec<Option<&Bruise>> = all
             .iter()
@@ -277,11 +288,8 @@ impl Blows {
     pub fn outcome(&self, plan: &BruisePlan, scene: &Scene) -> BruiseOutcome {
         let all = self.bruises(plan);
         let walls = scene.walls.len();
-        let limits: Vec<(f64, f64)> = plan
-            .limits
-            .iter()
-            .map(|limit| (*limit, self.variance_ratio(&all, *limit, walls)))
-            .collect();
+        let ratios = self.variance_ratios(walls);
+        let limits: Vec<(f64, f64)> = plan.limits.iter().copied().zip(ratios).collect();
         let shares = plan.model.shares_above(&self.of, &limits, LEVEL, DRAWS);
         let limits = plan.limits.iter().zip(shares);
         let limits = limits.map(|(&limit, found)| LimitOutcome {

@@ -13,6 +13,8 @@ pub struct Counts {
     pub above: Vec<Vec<usize>>,
     /// Fruit in a replicate.
     pub fruit: usize,
+    /// Variance of a share over that of independent fruit, as one replicate tells it; 1.
+    pub variance_ratio: f64,
 }
 
 /// A number with the ends of its interval; 1.
@@ -30,13 +32,16 @@ pub struct Estimate {
 ///
 /// On the scale q = ln(p/(1 − p)), with half a fruit added on either side:
 ///
-/// `half² = max(t² s² (1 + 1/R), z² b) + z² c`
+/// `half² = max(t² s² (1 + 1/R), z² b/R) + z² c`
 ///
 /// s²: variance of q between replicates, R of them, which have other fruit, other places and
 /// resampled laws; t: Student's quantile with R − 1 degrees of freedom; b: variance of q that
-/// chance alone gives to one batch; c: variance of q between bruise models drawn from the
-/// uncertainty of their coefficients; z: the normal quantile. Of one replicate only b and c
-/// are known.
+/// chance alone gives to one batch of independent fruit; c: variance of q between bruise models
+/// drawn from the uncertainty of their coefficients; z: the normal quantile. A machine treats
+/// fruit more evenly than chance, or less: what replicates show takes the place of b, which only
+/// keeps equal replicates from an interval of no width. Of one replicate only b and c are known,
+/// and its first term is 2 z² v b: of this batch and of another one, with the ratio v of
+/// variances that pairs of fruit show which bruised each other.
 pub fn share(counts: &Counts) -> Estimate {
     let n = counts.fruit as f64;
     let scale = |above: usize| {
@@ -51,9 +56,10 @@ pub fn share(counts: &Counts) -> Estimate {
     let own = counts.above.iter().map(|own| own[0] as f64 / n);
     let value = mean(&own.collect::<Vec<f64>>());
     let centre = mean(&rows.iter().map(|own| own[0]).collect::<Vec<f64>>());
-    let p = 1.0 / (1.0 + (-centre).exp());
-    let chance = 1.0 / ((n + 1.0) * p * (1.0 - p));
-    let half = half_width(&rows, chance);
+    // One fruit more on either side: where none is bruised, half a one would tell of nothing.
+    let p = ((n + 1.0) / (1.0 + (-centre).exp()) + 0.5) / (n + 2.0);
+    let chance = 1.0 / ((n + 2.0) * p * (1.0 - p));
+    let half = half_width(&rows, chance, counts.variance_ratio);
     let back = |q: f64| 1.0 / (1.0 + (-q).exp());
     // Half a fruit must not put the share itself outside.
     Estimate {
@@ -89,15 +95,23 @@ pub fn difference(pairs: &[(&Counts, &Counts)]) -> Option<Estimate> {
         })
         .collect();
     let value = mean(&rows.iter().map(|own| own[0]).collect::<Vec<f64>>());
+    // More than one replicate tells of itself how far fruit are not independent.
+    let one = |own: &Counts| {
+        if replicates > 1 {
+            1.0
+        } else {
+            own.variance_ratio
+        }
+    };
     let of_one = |own: &Counts| {
         let shares = (0..replicates).map(|replicate| share(own, replicate, 0));
         let p = mean(&shares.collect::<Vec<f64>>());
         let p = (p * own.fruit as f64 + 0.5) / (own.fruit as f64 + 1.0);
-        p * (1.0 - p) / own.fruit as f64
+        p * (1.0 - p) / own.fruit as f64 * one(own)
     };
     let chance = pairs.iter().map(|(a, b)| of_one(a) + of_one(b));
     let chance = chance.sum::<f64>() / (pairs.len() * pairs.len()) as f64;
-    let half = half_width(&rows, chance);
+    let half = half_width(&rows, chance, 1.0);
     Some(Estimate {
         value,
         low: value - half,
@@ -106,7 +120,8 @@ pub fn difference(pairs: &[(&Counts, &Counts)]) -> Option<Estimate> {
 }
 
 /// * `rows`: of each replicate, by the models, the first as it is
-fn half_width(rows: &[Vec<f64>], chance: f64) -> f64 {
+/// * `chance`: variance by chance of one batch; `ratio`: of that of one replicate
+fn half_width(rows: &[Vec<f64>], chance: f64, ratio: f64) -> f64 {
     let models = rows.iter().map(Vec::len).min().unwrap_or(0);
     let column = |model: usize| rows.iter().map(|row| row[model]).collect::<Vec<f64>>();
     let drawn: Vec<f64> = (1..models).map(|model| mean(&column(model))).collect();
@@ -115,11 +130,15 @@ fn half_width(rows: &[Vec<f64>], chance: f64) -> f64 {
     let count = rows.len() as f64;
     let tail = 0.5 * (1.0 - LEVEL);
     let z = normal_quantile(1.0 - tail);
-    let replicates = match rows.len() > 1 {
-        true => t_upper_quantile(tail, count - 1.0).powi(2) * mean(&between) * (1.0 + 1.0 / count),
-        false => 0.0,
+    let batches = match rows.len() > 1 {
+        true => {
+            let t = t_upper_quantile(tail, count - 1.0);
+            let seen = t * t * mean(&between) * (1.0 + 1.0 / count);
+            seen.max(z * z * chance / count)
+        }
+        false => 2.0 * z * z * ratio * chance,
     };
-    (replicates.max(z * z * chance) + z * z * coefficients).sqrt()
+    (batches + z * z * coefficients).sqrt()
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -156,6 +175,7 @@ mod tests {
             let counts = Counts {
                 above: (0..replicates).map(|number| vec![batch(number)]).collect(),
                 fruit: FRUIT,
+                variance_ratio: 1.0,
             };
             let found = share(&counts);
             let other = batch(replicates) as f64 / FRUIT as f64;
@@ -171,21 +191,30 @@ mod tests {
         let one = |above: usize| Counts {
             above: vec![vec![above]],
             fruit: 1000,
+            variance_ratio: 1.0,
         };
         let found = share(&one(200));
-        // ±1.96 √(0.2·0.8/1000) = ±0.0248.
+        // q = ln(0.2/0.8) ± 1.96 √(2/(1000·0.2·0.8)).
         assert!((found.value - 0.2).abs() < 1e-12);
         assert!(
-            (found.low - 0.1764).abs() < 1e-3 && (found.high - 0.2260).abs() < 1e-3,
+            (found.low - 0.1675).abs() < 2e-4 && (found.high - 0.2377).abs() < 2e-4,
             "{found:?}"
+        );
+        let together = share(&Counts {
+            variance_ratio: 2.0,
+            ..one(200)
+        });
+        assert!(
+            (together.low - 0.1553).abs() < 2e-4 && (together.high - 0.2545).abs() < 2e-4,
+            "{together:?}"
         );
         let none = share(&one(0));
         assert!(none.value == 0.0 && none.low < 1e-4 && (0.002..0.01).contains(&none.high));
         let found = difference(&[(&one(200), &one(300))]).unwrap();
-        // ±1.96 √(0.16/1000 + 0.21/1000) = ±0.0377.
+        // ±1.96 √(2 (0.16/1000 + 0.21/1000)) = ±0.0533.
         assert!((found.value - 0.1).abs() < 1e-12);
         assert!(
-            (found.high - found.value - 0.0377).abs() < 2e-4,
+            (found.high - found.value - 0.0533).abs() < 3e-4,
             "{found:?}"
         );
         assert!(difference(&[]).is_none());
@@ -200,10 +229,12 @@ mod tests {
                 vec![140 + shift, 60 + shift, 360 + shift],
             ],
             fruit: 10_000,
+            variance_ratio: 1.0,
         };
         let (a, b) = (rows(0), rows(1000));
         let found = difference(&[(&a, &b)]).unwrap();
-        let chance = 1.959_964 * (0.012 * 0.988 / 1e4 + 0.112 * 0.888 / 1e4_f64).sqrt();
+        // Two replicates with the same difference: half of the variance of chance is left.
+        let chance = 1.959_964 * (0.5 * (0.012 * 0.988 / 1e4 + 0.112 * 0.888 / 1e4_f64)).sqrt();
         assert!(
             (found.high - found.value - chance).abs() < 1e-4,
             "{found:?} {chance}"

@@ -78,6 +78,8 @@ pub struct Replicate {
     pub above: Vec<Vec<usize>>,
     /// Limits; m³.
     pub limits: Vec<f64>,
+    /// Variance of the share above each over that of independent fruit; 1.
+    pub variance_ratios: Vec<f64>,
     /// Its results.
     pub scene: SceneOutcome,
 }
@@ -88,6 +90,10 @@ fn counts(replicates: &[Replicate], limit: usize) -> Counts {
     Counts {
         above: replicates.iter().map(of).collect(),
         fruit: replicates.first().map_or(0, |own| own.scene.fruit),
+        variance_ratio: replicates
+            .first()
+            .and_then(|own| own.variance_ratios.get(limit).copied())
+            .unwrap_or(1.0),
     }
 }
 

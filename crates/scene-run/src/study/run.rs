@@ -288,6 +288,7 @@ fn run_one(
         draw_laws(&mut scene, replicate as u64 + 1)?;
     }
     let limits = scene.bruise.as_ref().map(|own| own.limits.clone());
+    let walls = scene.scene.walls.len();
     let run = run_plan(scene, &folder, SceneStart::Restart, progress)?;
     Ok(Replicate {
         above: run.blows.as_ref().map_or_else(
@@ -295,6 +296,10 @@ fn run_one(
             |blows| blows.counts_above(MODELS),
         ),
         limits: limits.unwrap_or_default(),
+        variance_ratios: run
+            .blows
+            .as_ref()
+            .map_or_else(Vec::new, |blows| blows.variance_ratios(walls)),
         scene: run.outcome,
     })
 }
