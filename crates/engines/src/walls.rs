@@ -292,7 +292,7 @@ mod tests {
             name: "wall".into(),
             material: 0,
             shape,
-            motion: windfall_scene::shape::wall::Motion::default(),
+            motion: windfall_scene::shape::motion::Motion::default(),
         }
     }
 

@@ -11,6 +11,7 @@ pub mod double_double;
 pub mod fast;
 pub mod least_squares;
 pub mod logarithmic;
+pub mod monotone_cubic;
 pub mod normal_equations;
 pub mod numbers;
 pub mod ode;

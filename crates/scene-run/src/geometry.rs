@@ -216,7 +216,7 @@ mod tests {
                 point: [0.0, 0.0, -(number as f64)],
                 normal: [0.0, 0.0, 1.0],
             },
-            motion: windfall_scene::shape::wall::Motion::default(),
+            motion: windfall_scene::shape::motion::Motion::default(),
         };
         let scene = Scene {
             materials: vec!["steel".into()],

@@ -16,8 +16,9 @@ use windfall_scene::error::Error;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::shape::motion::Motion;
 use windfall_scene::shape::surface::Shape;
-use windfall_scene::shape::wall::{Motion, Wall};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::state::State;
 
 /// Steps after which contacts that ended are taken.

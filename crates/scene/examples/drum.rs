@@ -13,8 +13,9 @@ use windfall_contact::expression::parse_law;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::shape::motion::{Axis, How, Motion};
 use windfall_scene::shape::surface::Shape;
-use windfall_scene::shape::wall::{Motion, Turning, Wall};
+use windfall_scene::shape::wall::Wall;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -33,14 +34,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Layers of 9 × 9 fruit, 84 mm apart, in a drum of 1.2 m.
     let layers = fruit.div_ceil(81);
     let long = 0.084 * layers as f64;
-    let motion = Motion {
-        rotation: Some(Turning {
+    let motion = Motion::always([How::Rotation {
+        about: Axis {
             point: [0.0; 3],
-            axis: [1.0, 0.0, 0.0],
-            angular_velocity: 1.0,
-        }),
-        ..Motion::default()
-    };
+            direction: [1.0, 0.0, 0.0],
+        },
+        angular_velocity: 1.0,
+    }]);
     let wall = |name: &str, shape, motion| Wall {
         name: name.to_owned(),
         material: 1,
@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             materials: vec!["apple".into(), "steel".into()],
             interactions: BTreeMap::from([((0, 0), contact.clone()), ((0, 1), contact.clone())]),
             walls: vec![
-                wall("drum", side, motion),
+                wall("drum", side, motion.clone()),
                 wall("left", end(0.0, 1.0), Motion::default()),
                 wall("right", end(long, -1.0), Motion::default()),
             ],

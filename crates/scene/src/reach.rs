@@ -146,8 +146,8 @@ fn distance(sink: &Sink, place: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::motion::{How, Motion};
     use crate::shape::surface::{Plate, Shape};
-    use crate::shape::wall::Motion;
 
     /// A closed box of 1 m with a square hole in its floor, above a sink.
     fn hopper(hole: f64) -> Scene {
@@ -194,7 +194,7 @@ mod tests {
         // Much narrower than 0.1 m.
         assert_eq!(of(0.06), Some(false));
         let mut open = hopper(0.06);
-        open.walls[0].motion.velocity = [0.0, 0.0, 0.1];
+        open.walls[0].motion = Motion::always([How::Velocity([0.0, 0.0, 0.1])]);
         assert_eq!(reaches_a_sink(&open, 0.05, &place), Some(true));
         // From outside it is free.
         assert_eq!(

@@ -144,8 +144,8 @@ fn doubled_planes(walls: &[Wall], apart: f64) -> Option<Doubled> {
 mod tests {
     use super::*;
     use crate::scene::Fruit;
+    use crate::shape::motion::{How, Motion};
     use crate::shape::surface::Plate;
-    use crate::shape::wall::Motion;
 
     fn scene(shapes: Vec<Shape>) -> Scene {
         let wall = |shape| Wall {
@@ -209,7 +209,7 @@ mod tests {
         // Touching is well; a wall that has moved there by then is not.
         own.fruit[0].place[2] = 0.0399;
         assert_eq!(first_in_wall(&own), None);
-        own.walls[0].motion.velocity = [0.0, 0.0, 0.1];
+        own.walls[0].motion = Motion::always([How::Velocity([0.0, 0.0, 0.1])]);
         assert_eq!(first_in_wall(&own), None);
         own.fruit[0].time = 0.2;
         assert!(first_in_wall(&own).is_some_and(|own| (own.overlap - 0.0201).abs() < 1e-12));

@@ -8,8 +8,9 @@ use windfall_scene::energy::Energy;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::Scene;
+use windfall_scene::shape::motion::{Axis, How, Motion};
 use windfall_scene::shape::surface::{Plate, Shape};
-use windfall_scene::shape::wall::{Motion, Turning, Wall};
+use windfall_scene::shape::wall::Wall;
 
 /// Slope of the logarithms of errors over those of steps, by least squares.
 fn order(points: &[(f64, f64)]) -> f64 {
@@ -118,14 +119,13 @@ fn paddle(expression: &str, step: f64, share: f64) -> (f64, f64) {
             corner: [0.0, -0.5, 0.0],
             edges: [[c, 0.0, s], [0.0, 1.0, 0.0]],
         }]),
-        motion: Motion {
-            rotation: Some(Turning {
+        motion: Motion::always([How::Rotation {
+            about: Axis {
                 point: [0.0; 3],
-                axis: [0.0, -1.0, 0.0],
-                angular_velocity: speed,
-            }),
-            ..Motion::default()
-        },
+                direction: [0.0, -1.0, 0.0],
+            },
+            angular_velocity: speed,
+        }]),
         ..floor()
     });
     let place = [0.3, 0.0, 0.04 + before];

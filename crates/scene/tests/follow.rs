@@ -8,8 +8,9 @@ use windfall_scene::follow::Followed;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::{Fruit, Scene, Sink};
+use windfall_scene::shape::motion::Motion;
 use windfall_scene::shape::surface::Shape;
-use windfall_scene::shape::wall::{Motion, Wall};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::plus_scaled;
 
 /// Two apples that collide above a floor and fall on it, and one that comes later.

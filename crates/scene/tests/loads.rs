@@ -8,8 +8,9 @@ use windfall_scene::event::{Event, Partner};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::Scene;
+use windfall_scene::shape::motion::{How, Motion};
 use windfall_scene::shape::surface::{Plate, Shape};
-use windfall_scene::shape::wall::{Motion, Vibration, Wall};
+use windfall_scene::shape::wall::Wall;
 
 const RADIUS: f64 = 0.0375;
 const MASS: f64 = 0.1856;
@@ -68,13 +69,10 @@ fn loads(scene: Scene, end: f64) -> (Vec<Event>, f64) {
 fn a_column_that_is_shaken_for_long_is_not_hit_harder() {
     // 0.4 g at 15 Hz: nothing leaves the floor.
     let rate = std::f64::consts::TAU * 15.0;
-    let shaken = Motion {
-        vibration: Some(Vibration {
-            amplitude: [0.0, 0.0, 0.4 * 9.81 / (rate * rate)],
-            frequency: 15.0,
-        }),
-        ..Motion::default()
-    };
+    let shaken = Motion::always([How::Vibration {
+        amplitude: [0.0, 0.0, 0.4 * 9.81 / (rate * rate)],
+        frequency: 15.0,
+    }]);
     let (events, closure) = loads(column(5, shaken, 5e-5), 12.0);
     assert!(closure.abs() < 1e-3, "{closure}");
     let most = |from: f64, to: f64| {

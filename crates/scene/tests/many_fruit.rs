@@ -8,8 +8,9 @@ use windfall_scene::event::{Event, Partner};
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::shape::motion::Motion;
 use windfall_scene::shape::surface::{Plate, Shape};
-use windfall_scene::shape::wall::{Motion, Wall};
+use windfall_scene::shape::wall::Wall;
 
 fn apples() -> Interaction {
     Interaction {

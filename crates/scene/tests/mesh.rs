@@ -8,8 +8,9 @@ use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Simulation};
 use windfall_scene::scene::Scene;
+use windfall_scene::shape::motion::{Axis, How, Motion};
 use windfall_scene::shape::surface::{Plate, Shape};
-use windfall_scene::shape::wall::{Motion, Turning, Vibration, Wall};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::Vector;
 
 fn apple() -> Interaction {
@@ -91,33 +92,23 @@ fn a_ball_on_a_flat_mesh_feels_no_edge() {
     // 38,400 triangles of 10 mm; the patch in which it presses on them has about that size.
     let motions = [
         Motion::default(),
-        Motion {
-            surface_velocity: [0.2, -0.1, 0.0],
-            ..Motion::default()
-        },
-        Motion {
-            velocity: [0.0, 0.1, 0.02],
-            ..Motion::default()
-        },
-        Motion {
-            vibration: Some(Vibration {
-                amplitude: [0.001, 0.0, 0.0005],
-                frequency: 25.0,
-            }),
-            ..Motion::default()
-        },
-        Motion {
-            rotation: Some(Turning {
+        Motion::always([How::Belt([0.2, -0.1, 0.0])]),
+        Motion::always([How::Velocity([0.0, 0.1, 0.02])]),
+        Motion::always([How::Vibration {
+            amplitude: [0.001, 0.0, 0.0005],
+            frequency: 25.0,
+        }]),
+        Motion::always([How::Rotation {
+            about: Axis {
                 point: [0.5, 0.3, 0.0],
-                axis: [0.0, 0.0, 1.0],
-                angular_velocity: 0.7,
-            }),
-            ..Motion::default()
-        },
+                direction: [0.0, 0.0, 1.0],
+            },
+            angular_velocity: 0.7,
+        }]),
     ];
     for motion in motions {
-        let (plate, on_plate) = over_a_floor(flat(), motion);
-        let (mesh, on_mesh) = over_a_floor(flat_mesh(), motion);
+        let (plate, on_plate) = over_a_floor(flat(), motion.clone());
+        let (mesh, on_mesh) = over_a_floor(flat_mesh(), motion.clone());
         let way = apart(plate[0].place, mesh[0].place);
         let speed = apart(plate[0].velocity, mesh[0].velocity);
         println!(
@@ -328,14 +319,13 @@ fn fruit_in_a_drum_of_triangles_that_turns() {
     // A drum of 20,000 triangles, turning, with ends; fruit are carried up and fall back.
     let mut scene = scene(apple(), 1e-4);
     scene.gravity = [0.0, 0.0, -9.81];
-    let motion = Motion {
-        rotation: Some(Turning {
+    let motion = Motion::always([How::Rotation {
+        about: Axis {
             point: [0.0; 3],
-            axis: [1.0, 0.0, 0.0],
-            angular_velocity: 2.0,
-        }),
-        ..Motion::default()
-    };
+            direction: [1.0, 0.0, 0.0],
+        },
+        angular_velocity: 2.0,
+    }]);
     let side = tessellated(200, 50, |s, t| {
         let angle = std::f64::consts::TAU * s;
         [0.6 * t - 0.3, 0.4 * angle.sin(), 0.4 * angle.cos()]

@@ -11,8 +11,9 @@ use windfall_scene::event::Event;
 use windfall_scene::interaction::{Interaction, Spread, mindlin_ratio};
 use windfall_scene::motion::simulation::{FruitState, Leaving, Simulation};
 use windfall_scene::scene::{Scene, Sink};
+use windfall_scene::shape::motion::{Axis, How, Motion};
 use windfall_scene::shape::surface::Shape;
-use windfall_scene::shape::wall::{Motion, Turning, Vibration, Wall};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::state::State;
 
 /// Numbers as good as random, the same everywhere; -0.5 to 0.5.
@@ -67,10 +68,10 @@ fn scene(moves: bool) -> Scene {
         ..Scene::default()
     };
     let mut shaken = floor();
-    shaken.motion.vibration = Some(Vibration {
+    shaken.motion = Motion::always([How::Vibration {
         amplitude: [0.001, 0.0, 0.002],
         frequency: 15.0,
-    });
+    }]);
     scene.walls = vec![
         shaken,
         plane("left", [0.0; 3], [1.0, 0.0, 0.0]),
@@ -95,14 +96,13 @@ fn scene(moves: bool) -> Scene {
                     [[0.3, 0.4, 0.02], [0.5, 0.4, 0.15], [0.3, 0.4, 0.15]],
                 ],
             },
-            motion: Motion {
-                rotation: Some(Turning {
+            motion: Motion::always([How::Rotation {
+                about: Axis {
                     point: [0.4, 0.4, 0.0],
-                    axis: [0.0, 0.0, 1.0],
-                    angular_velocity: 4.0,
-                }),
-                ..Motion::default()
-            },
+                    direction: [0.0, 0.0, 1.0],
+                },
+                angular_velocity: 4.0,
+            }]),
         },
     ];
     if !moves {

@@ -7,7 +7,7 @@ use crate::formula::syntax::{REMEMBERED, Term, is_reserved, parse_formula, parse
 use crate::formula::unit::{Units, check_units, si_dimension};
 use crate::formula::value::node_values;
 use crate::laws::any_law_size::LARGEST_PARAMETERS;
-use crate::laws::force_table::{ForceTable, MonotoneCubic, check_table};
+use crate::laws::force_table::{ForceTable, check_table};
 use crate::laws::kind::LawKind;
 use crate::laws::user::{
     Body, Known, OUTPUTS, UserForce, UserKind, UserLawDefinition, UserParameter,
@@ -18,6 +18,7 @@ use crate::laws::user_finding::UserLawFinding;
 use crate::laws::user_memory_check::check_unloading;
 use crate::parameter::{Elastic, LawDescription, NO_BOUND, ParameterDescription, Power, parameter};
 use std::sync::{Mutex, PoisonError};
+use windfall_numerics::monotone_cubic::MonotoneCubic;
 use windfall_numerics::unit::quantity::Dimension;
 
 /// Change of an exponent with which units are checked again.

@@ -4,12 +4,13 @@ use crate::formula::program::{CONSTANTS, Program};
 use crate::granular_law::GranularLaw;
 use crate::law::{ContactForce, ContactLaw};
 use crate::laws::any_law_size::LARGEST_PARAMETERS;
-use crate::laws::force_table::{ForceTable, MonotoneCubic};
+use crate::laws::force_table::ForceTable;
 use crate::laws::user_finding::UserLawFinding;
 use crate::parameter::LawDescription;
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
+use windfall_numerics::monotone_cubic::MonotoneCubic;
 use windfall_numerics::real::Real;
 
 /// A parameter of a user's law, as it is declared.

@@ -6,8 +6,9 @@ use crate::law::PairNumbers;
 use crate::walls::{Region, Tilt, region_of};
 use std::fmt::Write;
 use windfall_files::text::quote::comment_text;
-use windfall_scene::shape::wall::{Motion, Wall};
-use windfall_scene::vector::{Vector, add, dot, plus_scaled};
+use windfall_scene::shape::motion::{Axis, How, Motion, When};
+use windfall_scene::shape::wall::Wall;
+use windfall_scene::vector::{Vector, dot, plus_scaled};
 
 /// Regions and fixes of all walls.
 ///
@@ -76,14 +77,10 @@ fn motion(number: usize, wall: &Wall, region: &Region) -> Result<(String, String
             let _ = write!(words, " v_w{number}{axis}");
         }
     }
-    let turn = match (region.tilt(), motion.rotation) {
+    let turn = match (region.tilt(), turn(motion)) {
         (None, None) => return Ok((text, words)),
         (Some(Tilt { point, axis, angle }), None) => (point, axis, angle.to_string()),
-        (None, Some(own)) => (
-            own.point,
-            own.axis,
-            format!("{}*time", own.angular_velocity),
-        ),
+        (None, Some((about, angle))) => (about.point, about.direction, angle),
         (Some(_), Some(_)) => {
             return Err("it turns and does not stand along the axes".to_owned());
         }
@@ -99,36 +96,125 @@ fn motion(number: usize, wall: &Wall, region: &Region) -> Result<(String, String
     Ok((text, words))
 }
 
+/// The axis that a wall turns about, and its angle as a formula of the time.
+fn turn(motion: &Motion) -> Option<(Axis, String)> {
+    let (mut axis, mut angles) = (None, Vec::new());
+    for own in &motion.moves {
+        if let How::Rotation {
+            about,
+            angular_velocity,
+        } = own.how
+        {
+            axis = Some(about);
+            angles.push(format!("{angular_velocity}*{}", elapsed(&own.when)));
+        }
+    }
+    axis.map(|axis| (axis, angles.join("+")))
+}
+
 /// Where a wall is along each axis, as a formula of the time; empty where it stays.
 fn shift(motion: &Motion, region: &Region) -> Result<[String; 3], String> {
-    let mut velocity = motion.velocity;
-    if motion.surface_velocity != [0.0; 3] {
-        // An endless plane that moves along itself is a belt.
-        let Region::Plane { normal, .. } = region else {
-            return Err(
-                "a belt: of surfaces that run and stay it has endless planes alone (LIGGGHTS has \
-                 others)"
-                    .to_owned(),
-            );
-        };
-        if motion.rotation.is_some() {
-            return Err("a belt that turns".to_owned());
+    let mut parts = [const { Vec::new() }; 3];
+    let mut push = |vector: Vector, formula: &str| {
+        for (parts, own) in parts.iter_mut().zip(vector) {
+            if own != 0.0 {
+                parts.push(format!("{own}*{formula}"));
+            }
         }
-        velocity = add(velocity, along(motion.surface_velocity, *normal));
+    };
+    for own in &motion.moves {
+        match &own.how {
+            How::Velocity(velocity) => push(*velocity, &elapsed(&own.when)),
+            How::Belt(velocity) => {
+                // An endless plane that moves along itself is a belt.
+                let Region::Plane { normal, .. } = region else {
+                    return Err(
+                        "a belt: of surfaces that run and stay it has endless planes alone \
+                         (LIGGGHTS has others)"
+                            .to_owned(),
+                    );
+                };
+                push(along(*velocity, *normal), &elapsed(&own.when));
+            }
+            How::Vibration {
+                amplitude,
+                frequency,
+            } => {
+                let rate = 2.0 * std::f64::consts::PI * frequency;
+                push(*amplitude, &oscillation(&own.when, rate));
+            }
+            How::Rotation { .. } => {}
+            How::Path(_) => {
+                return Err(
+                    "it follows a table of positions (windfall's own engine has it)".to_owned(),
+                );
+            }
+        }
     }
-    Ok([0, 1, 2].map(|axis| {
-        let mut parts = Vec::new();
-        if velocity[axis] != 0.0 {
-            parts.push(format!("{}*time", velocity[axis]));
-        }
-        if let Some(own) = motion.vibration
-            && own.amplitude[axis] != 0.0
-        {
-            let rate = 2.0 * std::f64::consts::PI * own.frequency;
-            parts.push(format!("{}*sin({rate}*time)", own.amplitude[axis]));
-        }
-        parts.join("+")
-    }))
+    if motion.runs()
+        && motion
+            .moves
+            .iter()
+            .any(|own| matches!(own.how, How::Rotation { .. }))
+    {
+        return Err("a belt that turns".to_owned());
+    }
+    Ok(parts.map(|own| own.join("+")))
+}
+
+/// [`When::elapsed`] as a formula of the time.
+fn elapsed(when: &When) -> String {
+    let When { from, until, ramp } = *when;
+    if *when == When::ALWAYS {
+        return "time".to_owned();
+    }
+    // The part of a time above zero, or half the square of it over the ramp.
+    let grows = |corner: f64| match ramp > 0.0 {
+        true => format!("(time>{corner})*(time-{corner})^2/{}", 2.0 * ramp),
+        false => format!("(time>{corner})*(time-{corner})"),
+    };
+    let mut corners = vec![(from, '+')];
+    if ramp > 0.0 {
+        corners.push((from + ramp, '-'));
+    }
+    if until.is_finite() && ramp > 0.0 {
+        corners.push((until - ramp, '-'));
+    }
+    if until.is_finite() {
+        corners.push((until, if ramp > 0.0 { '+' } else { '-' }));
+    }
+    let terms = corners
+        .iter()
+        .map(|(corner, sign)| format!("{sign}{}", grows(*corner)));
+    let terms: String = terms.collect();
+    format!("({})", terms.trim_start_matches('+'))
+}
+
+/// A vibration of amplitude 1 as a formula of the time.
+///
+/// * `rate`: rad/s
+fn oscillation(when: &When, rate: f64) -> String {
+    let When { from, until, ramp } = *when;
+    if *when == When::ALWAYS {
+        return format!("sin({rate}*time)");
+    }
+    let wave = format!("sin({rate}*(time-{from}))");
+    let rises = match ramp > 0.0 {
+        true => format!(
+            "((time>{from})*(time-{from})-(time>{top})*(time-{top}))/{ramp}",
+            top = from + ramp
+        ),
+        false => format!("(time>{from})"),
+    };
+    let falls = match (until.is_finite(), ramp > 0.0) {
+        (true, true) => format!(
+            "(1-((time>{top})*(time-{top})-(time>{until})*(time-{until}))/{ramp})",
+            top = until - ramp
+        ),
+        (true, false) => format!("(time<{until})"),
+        (false, _) => "1".to_owned(),
+    };
+    format!("{wave}*{rises}*{falls}")
 }
 
 /// The part of a velocity along a plane.

@@ -5,6 +5,7 @@ use crate::liggghts::model::{Model, Types, model_of, words};
 use crate::walls::triangles_of;
 use std::fmt::Write;
 use windfall_files::text::quote::comment_text;
+use windfall_scene::shape::motion::How;
 use windfall_scene::shape::surface::Shape;
 use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, cross, length, scaled, subtract};
@@ -75,7 +76,7 @@ fn plane(
     (point, normal): (Vector, Vector),
     model: Model,
 ) -> Result<String, String> {
-    if !wall.motion.stays() || wall.motion.surface_velocity != [0.0; 3] {
+    if !wall.motion.moves.is_empty() {
         return Err("an endless plane that moves: a plate can".to_owned());
     }
     let across = (0..3).find(|&axis| normal[axis].abs() == 1.0);
@@ -92,36 +93,40 @@ fn plane(
 
 fn mesh(types: &Types, number: usize, wall: &Wall) -> Result<(String, String), String> {
     let triangles = triangles_of(&wall.shape)?;
-    let motion = &wall.motion;
-    let belt = match motion.surface_velocity {
-        own if own == [0.0; 3] => String::new(),
-        own => format!(" surface_vel {}", triple(own)),
-    };
+    if !wall.motion.is_steady() {
+        return Err("its moves begin or end, or follow a table".to_owned());
+    }
+    let (mut belt, mut moves) = (String::new(), Vec::new());
+    for own in &wall.motion.moves {
+        match &own.how {
+            How::Belt(velocity) => belt = format!(" surface_vel {}", triple(*velocity)),
+            How::Velocity(velocity) => moves.push(format!("linear {}", triple(*velocity))),
+            How::Vibration {
+                amplitude,
+                frequency,
+            } => {
+                let (amplitude, period) = (triple(*amplitude), 1.0 / frequency);
+                moves.push(format!("wiggle amplitude {amplitude} period {period}"));
+            }
+            How::Rotation {
+                about,
+                angular_velocity,
+            } => {
+                let direction = triple(scaled(about.direction, angular_velocity.signum()));
+                let period = 2.0 * std::f64::consts::PI / angular_velocity.abs();
+                let point = triple(about.point);
+                moves.push(format!(
+                    "rotate origin {point} axis {direction} period {period}"
+                ));
+            }
+            How::Path(_) => return Err("it follows a table".to_owned()),
+        }
+    }
     let mut text = format!(
         "# {}\nfix wall{number} all mesh/surface file wall{number}.stl type {}{belt}\n",
         comment_text(&wall.name),
         types.of_wall(wall.material)
     );
-    let mut moves = Vec::new();
-    if motion.velocity != [0.0; 3] {
-        moves.push(format!("linear {}", triple(motion.velocity)));
-    }
-    if let Some(own) = motion.vibration {
-        let period = 1.0 / own.frequency;
-        moves.push(format!(
-            "wiggle amplitude {} period {period}",
-            triple(own.amplitude)
-        ));
-    }
-    if let Some(own) = motion.rotation {
-        let axis = scaled(own.axis, own.angular_velocity.signum());
-        let period = 2.0 * std::f64::consts::PI / own.angular_velocity.abs();
-        moves.push(format!(
-            "rotate origin {} axis {} period {period}",
-            triple(own.point),
-            triple(axis)
-        ));
-    }
     for (place, own) in moves.iter().enumerate() {
         let _ = writeln!(
             text,

@@ -1,5 +1,6 @@
 //! `windfall bruise`: volumes of bruises from what one measures of them.
 
+use crate::file::columns::quantities;
 use serde::Serialize;
 use std::path::Path;
 use windfall_files::error::Error;
@@ -7,9 +8,8 @@ use windfall_files::option_value::{positive, unusable};
 use windfall_files::table::data::read_data;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
-use windfall_numerics::unit::quantity::parse_as;
 use windfall_scene::bruise::damage::{cap_volume, cap_volume_with_bulge, half_ellipsoid_volume};
-use windfall_statistics::table::{Cells, Table};
+use windfall_statistics::table::Cells;
 
 /// Volumes of one bruise; m³.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -86,7 +86,7 @@ pub fn table_of_volumes(path: &Path) -> Result<String, Error> {
     let data = read_data(path)?;
     let table = &data.table;
     let wrong = |problem: String| unusable(path.display().to_string(), problem);
-    let column = |name: &str| lengths(table, name).map_err(Error::Statistics);
+    let column = |name: &str| quantities(table, name, "m").map_err(Error::Statistics);
     let first = match column("bruise width")? {
         Some(own) => Some(own),
         None => column("bruise width 1")?,
@@ -130,26 +130,6 @@ pub fn table_of_volumes(path: &Path) -> Result<String, Error> {
     let names = table.columns.iter().map(|own| own.name.clone());
     let header: Vec<String> = names.chain(ADDED.map(str::to_owned)).collect();
     csv_text(&header, rows)
-}
-
-/// A column of lengths by its name without the unit; m.
-fn lengths(
-    table: &Table,
-    name: &str,
-) -> Result<Option<Vec<f64>>, windfall_statistics::error::Error> {
-    for column in &table.columns {
-        // The numbers of widths are no units: what stands behind the last underscore is.
-        let Some((title, unit)) = column.name.rsplit_once('_') else {
-            continue;
-        };
-        if title.replace('_', " ") == name
-            && let Ok(size) = parse_as(&format!("1 {unit}"), "m")
-        {
-            let numbers = table.numbers(&column.name)?;
-            return Ok(Some(numbers.iter().map(|own| size * own).collect()));
-        }
-    }
-    Ok(None)
 }
 
 fn cell(cells: &Cells, row: usize) -> String {

@@ -170,6 +170,11 @@ impl Section<'_> {
         }
     }
 
+    /// What stands at a place of the file.
+    pub fn written(&self, at: &Range<usize>) -> &str {
+        self.source.text.get(at.clone()).unwrap_or_default()
+    }
+
     /// The error of a value that is left out.
     pub fn lacks(&self, key: &'static str, meaning: &'static str, example: &'static str) -> Error {
         Error::ValueMissing {

@@ -3,11 +3,13 @@
 pub(crate) mod bruise;
 pub(crate) mod bruise_expression;
 pub(crate) mod card;
+pub(crate) mod columns;
 mod contacts;
 pub mod engine_kind;
 pub(crate) mod fruit;
 pub(crate) mod key;
 pub(crate) mod mesh;
+pub(crate) mod moves;
 pub(crate) mod properties;
 pub mod read;
 pub(crate) mod record;

@@ -4,6 +4,7 @@ use crate::file::bruise::{BruisePlan, bruise_of};
 use crate::file::contacts::contacts_of;
 use crate::file::fruit::fruit_of;
 use crate::file::key::{Section, check_names};
+use crate::file::moves::add_moves;
 use crate::file::properties::{in_order, with_properties};
 use crate::file::record::{RecordPlan, record_of};
 use crate::file::room::{check_room, drawn_fruit};
@@ -89,13 +90,14 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
     let walls = file.walls.iter();
     let mut findings = Vec::new();
     let walls = walls.map(|wall| wall_of(source, wall, &materials, &mut findings));
-    let walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
+    let mut walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
     let seed = file.scene.seed.unwrap_or(1);
     let fruit = drawn_fruit(source, &file, &kinds, seed)?;
     // In the order in which they come, which is that of their numbers.
     let (fruit, kind_of) = in_order(fruit, &kinds);
     let table = section(source, "[scene]");
     let timing = timing(&table, &file)?;
+    add_moves(source, &file.moves, &mut walls, timing.end)?;
     let bruise = file.bruise.as_ref().map(|bruise| {
         let plan = bruise_of(source, bruise, &file.fruit, seed)?;
         with_properties(source, &file, plan, &kind_of)

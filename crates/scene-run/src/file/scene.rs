@@ -25,6 +25,9 @@ pub struct SceneFile {
     /// Walls.
     #[serde(default)]
     pub walls: Vec<Spanned<crate::file::walls::WallFile>>,
+    /// What walls do, and when.
+    #[serde(default)]
+    pub moves: Vec<Spanned<crate::file::moves::MoveFile>>,
     /// Where fruit leave.
     #[serde(default)]
     pub sinks: Vec<Spanned<SinkFile>>,

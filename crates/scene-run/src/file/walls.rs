@@ -8,8 +8,9 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::file_quantity::QuantityText;
 use windfall_files::text::toml_source::{TomlSource, suggestion};
+use windfall_scene::shape::motion::{Axis, How, Motion};
 use windfall_scene::shape::surface::{Plate, Shape};
-use windfall_scene::shape::wall::{Motion, Turning, Vibration, Wall};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, cross, length, unit};
 
 /// `[[walls]]`
@@ -98,16 +99,19 @@ pub struct RotationFile {
     pub point: [f64; 3],
     /// Its direction.
     pub axis: [f64; 3],
-    pub angular_velocity: Spanned<QuantityText>,
+    pub angular_velocity: Option<Spanned<QuantityText>>,
+    /// How far it turns in all, in `[[moves]]`.
+    pub angle: Option<Spanned<QuantityText>>,
 }
 
-/// Places in the tables of a wall, which can be moved: a table and its keys.
-pub const PLACES: [(&str, &[&str]); 5] = [
+/// Places in the tables of a wall or a move, which can be moved: a table and its keys.
+pub const PLACES: [(&str, &[&str]); 6] = [
     ("plane", &["point"]),
     ("plate", &["corner"]),
     ("box", &["low", "high"]),
     ("cylinder", &["start", "end"]),
     ("rotation", &["point"]),
+    ("path", &["point"]),
 ];
 
 /// A wall; adds findings about its shape.
@@ -206,35 +210,59 @@ fn cylinder_of(table: &Section, tube: &Spanned<CylinderFile>, wall: &str) -> Res
     })
 }
 
+/// What a wall does from the beginning to the end.
 fn motion_of(table: &Section, file: &WallFile) -> Result<Motion, Error> {
-    let vibration = |own: &VibrationFile| {
-        Ok::<_, Error>(Vibration {
-            amplitude: own.amplitude,
-            frequency: table.given(&own.frequency, "vibration frequency", "Hz")?,
-        })
+    let given = |own: &Option<Spanned<Vector>>| {
+        let velocity = own.as_ref().map(|own| *own.get_ref());
+        velocity.filter(|own| *own != [0.0; 3])
     };
-    let rotation = |turn: &Spanned<RotationFile>| {
+    let mut all: Vec<How> = given(&file.velocity)
+        .map(How::Velocity)
+        .into_iter()
+        .collect();
+    if let Some(own) = &file.vibration {
+        all.push(vibration_of(table, own)?);
+    }
+    if let Some(turn) = &file.rotation {
+        let about = axis_of(table, turn)?;
         let own = turn.get_ref();
-        let no_axis = || {
-            let problem = "an axis must have a length";
-            table.refused(&turn.span(), "rotation axis", "[0, 0, 0]", problem)
+        let (Some(spin), None) = (&own.angular_velocity, &own.angle) else {
+            let problem = "a wall that always turns has an `angular_velocity`; an `angle` belongs to \
+                           a rotation in [[moves]]";
+            return Err(table.refused(
+                &turn.span(),
+                "rotation",
+                table.written(&turn.span()),
+                problem,
+            ));
         };
-        let spin = &own.angular_velocity;
-        Ok::<_, Error>(Turning {
-            point: own.point,
-            axis: unit(own.axis).ok_or_else(no_axis)?,
+        all.push(How::Rotation {
+            about,
             angular_velocity: table.given(spin, "rotation angular_velocity", "rad/s")?,
-        })
-    };
-    let vibrating = file.vibration.as_ref().map(Spanned::get_ref);
-    let vector =
-        |own: &Option<Spanned<Vector>>| own.as_ref().map_or([0.0; 3], |own| *own.get_ref());
-    Ok(Motion {
-        velocity: vector(&file.velocity),
-        vibration: vibrating.map(vibration).transpose()?,
-        rotation: file.rotation.as_ref().map(rotation).transpose()?,
-        surface_velocity: vector(&file.belt),
+        });
+    }
+    all.extend(given(&file.belt).map(How::Belt));
+    Ok(Motion::always(all))
+}
+
+/// `vibration`
+pub(crate) fn vibration_of(table: &Section, own: &Spanned<VibrationFile>) -> Result<How, Error> {
+    let own = own.get_ref();
+    Ok(How::Vibration {
+        amplitude: own.amplitude,
+        frequency: table.given(&own.frequency, "vibration frequency", "Hz")?,
     })
+}
+
+/// The axis of `rotation`
+pub(crate) fn axis_of(table: &Section, turn: &Spanned<RotationFile>) -> Result<Axis, Error> {
+    let RotationFile { point, axis, .. } = turn.get_ref();
+    let direction = unit(*axis).ok_or_else(|| {
+        let problem = "an axis must have a length";
+        table.refused(&turn.span(), "rotation axis", "[0, 0, 0]", problem)
+    })?;
+    let point = *point;
+    Ok(Axis { point, direction })
 }
 
 /// Names of the sides of a box: of each axis the low one and the high one.

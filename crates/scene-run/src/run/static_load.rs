@@ -68,8 +68,9 @@ mod tests {
     use windfall_contact::laws::kind::LawKind;
     use windfall_scene::event::Partner;
     use windfall_scene::scene::Fruit;
+    use windfall_scene::shape::motion::Motion;
     use windfall_scene::shape::surface::Shape;
-    use windfall_scene::shape::wall::{Motion, Wall};
+    use windfall_scene::shape::wall::Wall;
 
     /// A spring and a mass: half a period, π √(m/k), at any speed.
     #[test]

@@ -23,7 +23,8 @@ use windfall_scene::energy::Energy;
 use windfall_scene::interaction::Interaction;
 use windfall_scene::motion::time_step::{Impact, SHORTER, SHORTEST, StepError};
 use windfall_scene::scene::Scene;
-use windfall_scene::vector::{dot, length};
+use windfall_scene::shape::wall::Wall;
+use windfall_scene::vector::{add, dot, length, turned};
 
 /// Options of a run besides the file.
 #[derive(Clone, Debug, Default)]
@@ -352,8 +353,14 @@ fn fastest(scene: &Scene) -> f64 {
     let top = top.fold(f64::NEG_INFINITY, f64::max);
     let lowest = scene.walls.iter().flat_map(|wall| wall.shape.skeleton().0);
     let bottom = lowest.map(height).fold(f64::INFINITY, f64::min);
-    let fall = match (top - bottom).is_finite() {
-        true => (2.0 * gravity * (top - bottom).max(0.0)).sqrt(),
+    let drop = top - bottom
+        + scene
+            .walls
+            .iter()
+            .map(|own| lifted(own, height))
+            .fold(0.0, f64::max);
+    let fall = match drop.is_finite() {
+        true => (2.0 * gravity * drop.max(0.0)).sqrt(),
         false => 0.0,
     };
     let brought = scene
@@ -361,12 +368,23 @@ fn fastest(scene: &Scene) -> f64 {
         .iter()
         .map(|fruit| length(fruit.velocity))
         .fold(0.0, f64::max);
-    let belts = scene
-        .walls
-        .iter()
-        .map(|wall| length(wall.motion.surface_velocity));
-    let walls = scene.walls.iter().map(|wall| wall.largest_speed());
+    let belts = scene.walls.iter().map(|wall| wall.motion.belt_speed());
+    let ever = [f64::NEG_INFINITY, f64::INFINITY];
+    let walls = scene.walls.iter().map(|wall| wall.largest_speed(ever));
     (fall + brought + walls.fold(0.0, f64::max))
         .max(belts.fold(0.0, f64::max))
         .max(LEAST_SPEED)
+}
+
+/// How far a point of a wall has been lifted at the end of any of its moves; m.
+fn lifted(wall: &Wall, height: impl Fn([f64; 3]) -> f64) -> f64 {
+    let ends = wall.motion.moves.iter().map(|own| own.when.until);
+    let corners = wall.shape.skeleton().0;
+    let rises = ends.filter(|own| own.is_finite()).flat_map(|end| {
+        let (turn, shift) = wall.motion.pose(end);
+        let height = &height;
+        let risen = |own: &[f64; 3]| height(add(turned(turn, *own), shift)) - height(*own);
+        corners.iter().map(risen).collect::<Vec<f64>>()
+    });
+    rises.fold(0.0, f64::max)
 }

@@ -6,7 +6,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 use windfall_files::text::toml_source::suggestion;
 
 /// Lists of tables of a scene, in which a table is found by its name.
-const LISTS: [&str; 4] = ["walls", "fruit", "sinks", "contacts"];
+const LISTS: [&str; 5] = ["walls", "moves", "fruit", "sinks", "contacts"];
 
 /// Puts a value in the place of another.
 ///
@@ -107,7 +107,7 @@ const SOURCES: [(&str, &[&str]); 4] = [
 /// Nothing has that name, or it has no place that can be moved.
 pub fn move_named(document: &mut DocumentMut, name: &str, by: [f64; 3]) -> Result<(), String> {
     let mut names = Vec::new();
-    for list in ["walls", "fruit", "sinks"] {
+    for list in ["walls", "moves", "fruit", "sinks"] {
         let tables = document
             .get_mut(list)
             .and_then(Item::as_array_of_tables_mut);

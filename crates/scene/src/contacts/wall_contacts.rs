@@ -9,8 +9,9 @@ use crate::error::Error;
 use crate::event::{Encounter, Partner};
 use crate::interaction::Interaction;
 use crate::shape::facet_tree::FacetTree;
+use crate::shape::placed::Placed;
 use crate::shape::surface::{Closest, Facet, Shape};
-use crate::shape::wall::{Placed, Wall};
+use crate::shape::wall::Wall;
 use crate::vector::{Rotation, Vector, dot, length, plus_scaled, scaled, subtract};
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
@@ -46,6 +47,9 @@ pub(crate) struct WallState {
     pub placed: Vec<Option<(Placed, Placed)>>,
     /// Velocities of the surfaces of walls that stay: belts.
     pub belts: Vec<Option<Placed>>,
+    /// How far points of each wall are from its axis; 0 of endless planes, which are always
+    /// looked at; m.
+    reaches: Vec<f64>,
     /// Parts that are of no mesh.
     single: Vec<u32>,
     /// Of each mesh its wall, its first part, and all of them at rest.
@@ -67,26 +71,37 @@ impl WallState {
             }
             facets.extend(own.into_iter().map(|facet| (number, facet)));
         }
-        let belt = |wall: &Wall| {
-            let runs = wall.motion.surface_velocity != [0.0; 3];
-            (runs && wall.motion.stays()).then(|| wall.motion.at(0.0))
-        };
+        let belt =
+            |wall: &Wall| (wall.motion.runs() && wall.motion.stays()).then(|| wall.motion.at(0.0));
         Self {
             names: walls.iter().map(|wall| wall.name.clone()).collect(),
             facets,
             placed: vec![None; walls.len()],
             belts: walls.iter().map(belt).collect(),
+            reaches: walls.iter().map(Wall::reach).collect(),
             single,
             trees,
         }
     }
 
     pub(crate) fn move_to(&mut self, walls: &[Wall], time: f64, step: f64) {
-        for (placed, wall) in self.placed.iter_mut().zip(walls) {
-            if !wall.motion.stays() {
-                *placed = Some((wall.motion.at(time), wall.motion.at(time - 0.5 * step)));
+        let places = self.placed.iter_mut().zip(&mut self.belts);
+        for ((placed, belt), wall) in places.zip(walls) {
+            let before = time - 0.5 * step;
+            match wall.motion.stays() {
+                true if wall.motion.is_steady() => {}
+                true => *belt = Some(wall.motion.at(before)),
+                false => *placed = Some((wall.motion.at(time), wall.motion.at(before))),
             }
         }
+    }
+
+    /// The largest speed of walls but endless planes between two times; m/s.
+    pub(crate) fn largest_speed(&self, walls: &[Wall], between: [f64; 2]) -> f64 {
+        let own = self.reaches.iter().zip(walls);
+        let limited = own.filter(|(_, wall)| !matches!(wall.shape, Shape::Plane { .. }));
+        let speeds = limited.map(|(reach, wall)| wall.motion.largest_speed(*reach, between));
+        speeds.fold(0.0, f64::max)
     }
 
     /// The name of a wall as messages have it.

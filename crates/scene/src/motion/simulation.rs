@@ -17,8 +17,6 @@ use crate::line::HalfLine;
 use crate::motion::clump_motion::{Around, ClumpState};
 use crate::motion::gather::{Loads, Sums, Swept};
 use crate::scene::Scene;
-use crate::shape::surface::Shape;
-use crate::shape::wall::Wall;
 use crate::vector::{Rotation, Vector};
 
 /// A scene that runs.
@@ -57,7 +55,6 @@ pub struct Simulation {
     pub(crate) moved: f64,
     pub(crate) approach: f64,
     pub(crate) wall_way: f64,
-    pub(crate) wall_speed: f64,
     pub(crate) skin: f64,
     pub(crate) steps: u64,
     /// Fruit that has come, by number.
@@ -127,10 +124,6 @@ impl Simulation {
                 .position(|own| *own == key)
                 .unwrap_or(usize::MAX)
         };
-        // Planes are always looked at.
-        let planes = |own: &&Wall| !matches!(own.shape, Shape::Plane { .. });
-        let wall_speeds = scene.walls.iter().filter(planes).map(Wall::largest_speed);
-        let wall_speed = wall_speeds.fold(0.0, f64::max);
         Ok(Self {
             surfaces: scene.interactions.values().cloned().collect(),
             numbers: (0..materials * materials).map(number).collect(),
@@ -152,7 +145,6 @@ impl Simulation {
             moved: f64::INFINITY,
             approach: f64::INFINITY,
             wall_way: 0.0,
-            wall_speed,
             skin,
             steps: 0,
             released: 0,
@@ -301,7 +293,10 @@ impl Simulation {
         let swept = self.sweep(clock, with_energy);
         self.end(of_clumps)?;
         let energy = self.take_in(swept, with_energy)?;
-        self.wall_way += self.wall_speed * step;
+        self.wall_way += self
+            .walls
+            .largest_speed(&self.scene.walls, [time, time + step])
+            * step;
         self.steps += 1;
         Ok(energy)
     }

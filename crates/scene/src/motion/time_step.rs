@@ -4,8 +4,9 @@ use crate::error::Error;
 use crate::interaction::Interaction;
 use crate::motion::simulation::Simulation;
 use crate::scene::{Fruit, Scene};
+use crate::shape::motion::Motion;
 use crate::shape::surface::Shape;
-use crate::shape::wall::{Motion, Wall};
+use crate::shape::wall::Wall;
 use std::collections::BTreeMap;
 
 /// What a time step does to one impact.

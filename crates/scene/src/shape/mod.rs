@@ -3,5 +3,7 @@
 pub mod clump;
 pub(crate) mod facet_tree;
 pub mod mesh;
+pub mod motion;
+pub(crate) mod placed;
 pub mod surface;
 pub mod wall;

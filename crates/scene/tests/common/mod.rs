@@ -6,8 +6,9 @@ use windfall_contact::expression::parse_law;
 use windfall_contact::laws::kind::Law;
 use windfall_scene::interaction::Interaction;
 use windfall_scene::scene::{Fruit, Scene};
+use windfall_scene::shape::motion::Motion;
 use windfall_scene::shape::surface::Shape;
-use windfall_scene::shape::wall::{Motion, Wall};
+use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::Vector;
 
 /// Numbers of the materials.

@@ -209,6 +209,50 @@ fn reference_lammps_gives_the_histories_of_isolated_impacts() {
 }
 
 #[test]
+fn reference_lammps_gives_the_histories_on_walls_that_start_and_stop() {
+    let moves = r#"
+[[moves]]
+walls = ["floor"]
+shift = [0, 0, 0.05]
+from = "0.05 s"
+until = "0.3 s"
+[[moves]]
+walls = ["slope"]
+vibration = { amplitude = [0, 0, 0.003], frequency = "25 Hz" }
+from = "0.1 s"
+until = "0.3 s"
+ramp = "0.06 s"
+[[moves]]
+walls = ["slope"]
+velocity = [0, 0, 0.1]
+from = "0.15 s"
+ramp = "0 s"
+"#;
+    let folder = scene_of(&format!("{IMPACTS}{moves}"));
+    run(folder.path(), "own", &[]);
+    let own = contacts(folder.path(), "own");
+    let exact = ["--engine", "lammps", "--classes", "28"];
+    run(folder.path(), "lammps", &exact);
+    same(&contacts(folder.path(), "lammps"), &own, 0.01);
+    // They are others than on walls that stay.
+    let still = scene_of(IMPACTS);
+    run(still.path(), "own", &[]);
+    let peaks = |all: &BTreeMap<String, Vec<Contact>>| -> Vec<f64> {
+        all.values().flatten().map(|own| own.1[2]).collect()
+    };
+    assert_ne!(peaks(&contacts(still.path(), "own")), peaks(&own));
+    // LIGGGHTS has no moves that begin.
+    let (done, _, problem) = windfall(
+        &["scene", "export", "scene.toml", "--engine", "liggghts"],
+        folder.path(),
+    );
+    assert!(
+        !done && problem.contains("its moves begin or end"),
+        "{problem}"
+    );
+}
+
+#[test]
 fn reference_liggghts_gives_the_histories_of_isolated_impacts() {
     // It has one form of law for all meshes.
     let text = IMPACTS.replace(

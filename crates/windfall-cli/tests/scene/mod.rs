@@ -3,6 +3,7 @@
 
 #[cfg(unix)]
 mod engines;
+mod moves;
 mod run;
 mod study;
 mod view;
