@@ -2,11 +2,11 @@
 //!
 //! Spheres of a clump overlap, and several of them may reach into the same partner. As the
 //! fruit that they stand for is convex, it touches once: the sphere that reaches deepest makes
-//! the contact, and hands it on when another one does.
+//! the contact, and hands it on when another one does. In a spheroid that is any sphere that fits
+//! into it, found along its axis from the deepest of those that are bodies.
 
-use crate::contacts::contact::{
-    Moment, Outcome, Over, Parcel, encounter, parted, spot, too_deep, turn,
-};
+use crate::contacts::ball::{Ball, lacks_of};
+use crate::contacts::contact::{Moment, Outcome, Over, Parcel, encounter, parted, too_deep, turn};
 use crate::contacts::neighbours::Bodies;
 use crate::contacts::pair_contacts::LARGEST_OVERLAP;
 use crate::contacts::react::{
@@ -19,7 +19,6 @@ use crate::contacts::wall_contacts::{
 use crate::error::{Error, fruit_name};
 use crate::event::{Encounter, Partner};
 use crate::interaction::Interaction;
-use crate::line::HalfLine;
 use crate::shape::surface::Closest;
 use crate::vector::{Vector, add, cross, dot, length, plus_scaled, scaled, subtract};
 use std::collections::BTreeMap;
@@ -176,30 +175,6 @@ impl ClumpContacts {
     }
 }
 
-/// Velocity and spin of a body half a step ago.
-fn motion(bodies: &Bodies, body: usize) -> (Vector, Vector) {
-    let m = &bodies.motion[body];
-    ([m[0], m[1], m[2]], [m[4], m[5], m[6]])
-}
-
-fn centre(bodies: &Bodies, body: usize) -> Vector {
-    let HalfLine([x, y, z, _]) = bodies.place[body];
-    [x, y, z]
-}
-
-fn add_load(load: &mut Load, force: Vector, moment: Vector) {
-    for axis in 0..3 {
-        load[axis] += force[axis];
-        load[4 + axis] += moment[axis];
-    }
-}
-
-/// Where on its fruit a body is touched.
-fn spot_on(bodies: &Bodies, body: usize, normal: Vector) -> Vector {
-    let (turn, radius) = (bodies.turn[body], bodies.place[body][3]);
-    spot(turn, bodies.offset_of(body), radius, normal)
-}
-
 impl Touching {
     /// Force and moment against rolling on the first body, one step on; with the loads that are
     /// over although the contact lasts.
@@ -255,44 +230,53 @@ impl FruitPair {
         let Some((depth, [i, j])) = deepest else {
             return Ok(());
         };
-        let (i, j) = (i as usize, j as usize);
+        let fruit = [i, j].map(|body| bodies.fruit[body as usize]);
+        let lacks = fruit.map(|own| lacks_of(now, own)).iter().sum::<f64>();
+        if depth <= -lacks && self.contact.is_none() {
+            return Ok(());
+        }
+        let [[a, b], [c, d]] = Ball::closest([i as usize, j as usize], bodies, now);
+        let between = subtract(b.centre, a.centre);
+        let distance = length(between);
+        let depth = a.radius + b.radius - distance;
+        let fruit = (fruit[0], fruit[1]);
         if depth <= 0.0 {
             if let Some(own) = self.contact.take() {
-                let fruit = (bodies.fruit[i], bodies.fruit[j]);
                 let parted = parted(own.parcel, -depth, now.clock);
                 let over = Over::of(&parted, &own.law, false);
                 outcome.events.extend(over.of_pair(fruit));
             }
             return Ok(());
         }
-        let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
-        let shallow = depth <= LARGEST_OVERLAP * a.min(b);
+        let smaller = a.radius.min(b.radius);
+        let shallow = depth <= LARGEST_OVERLAP * smaller;
         if !shallow {
-            let (fruit, partner) = (bodies.fruit[i], fruit_name(bodies.fruit[j]));
-            return Err(too_deep(now.clock.time, fruit, partner, depth, a.min(b)));
+            let partner = fruit_name(fruit.1);
+            return Err(too_deep(now.clock.time, fruit.0, partner, depth, smaller));
         }
-        let between = subtract(centre(bodies, j), centre(bodies, i));
-        let distance = length(between);
         let normal = scaled(between, 1.0 / distance);
-        let ((u, p), (w, q)) = (motion(bodies, i), motion(bodies, j));
-        let (near, far) = (a - 0.5 * depth, b - 0.5 * depth);
-        let arms = add(scaled(p, near), scaled(q, far));
-        let relative = subtract(u, w);
-        let before = direction_before((between, distance), relative, now.clock.step);
+        let (near, far) = (a.radius - 0.5 * depth, b.radius - 0.5 * depth);
+        // Of the spheres that touched half a step ago.
+        let (close, away) = (c.radius - 0.5 * depth, d.radius - 0.5 * depth);
+        let arms = add(scaled(c.spin, close), scaled(d.spin, away));
+        let relative = subtract(c.velocity, d.velocity);
+        let earlier = subtract(d.centre, c.centre);
+        let before = direction_before((earlier, length(earlier)), relative, now.clock.step);
         let (rate, slip) = surface_motion(relative, arms, before);
         let touch = Touch {
             normal,
             displacement: depth,
             rate,
             slip,
-            spin: subtract(p, q),
-            radius: effective_radius(a, b),
+            spin: subtract(a.spin, b.spin),
+            radius: effective_radius(a.curvature_radius, b.curvature_radius),
         };
+        let [i, j] = [a.body, b.body];
         let surface = (around.surface)(bodies.material[i], bodies.material[j]);
         let met = || Encounter {
-            place: plus_scaled(centre(bodies, i), normal, near),
-            spot: spot_on(bodies, i, normal),
-            other_spot: spot_on(bodies, j, scaled(normal, -1.0)),
+            place: plus_scaled(a.centre, normal, near),
+            spot: a.spot(bodies, normal),
+            other_spot: b.spot(bodies, scaled(normal, -1.0)),
             ..encounter(&touch, now.clock)
         };
         let own = match &mut self.contact {
@@ -306,20 +290,21 @@ impl FruitPair {
             }
         };
         let (force, rolling, over) = own.push(surface, &touch, now.clock, met);
-        let fruit = (bodies.fruit[i], bodies.fruit[j]);
         let over = over.into_iter().flat_map(|own| own.of_pair(fruit));
         outcome.events.extend(over);
         let twist = cross(normal, force);
-        add_load(&mut loads[i], force, add(scaled(twist, near), rolling));
+        a.load(loads, force, add(scaled(twist, near), rolling));
         let (force, rolling) = (scaled(force, -1.0), scaled(rolling, -1.0));
-        add_load(&mut loads[j], force, add(scaled(twist, far), rolling));
+        b.load(loads, force, add(scaled(twist, far), rolling));
         Ok(())
     }
 }
 
 /// A sphere of a clump that reaches into a wall.
 struct Hit {
-    body: usize,
+    ball: Ball,
+    /// The sphere that touched half a step ago.
+    before: Ball,
     facet: u32,
     wall: u32,
     depth: f64,
@@ -328,31 +313,36 @@ struct Hit {
 
 impl NearWalls {
     /// Where the clump touches: the deepest of hits on one side of a wall.
-    fn hits(&self, bodies: &Bodies, walls: &WallState) -> Vec<Hit> {
+    fn hits(&self, bodies: &Bodies, walls: &WallState, now: &Moment) -> Vec<Hit> {
         let (mut all, mut found) = (Vec::new(), Vec::new());
-        for (body, parts) in &self.near {
-            let body = *body as usize;
-            let radius = bodies.place[body][3];
-            find_hits(walls, parts, centre(bodies, body), radius, &mut found);
-            all.extend(found.iter().map(|&(facet, closest)| Hit {
-                body,
-                facet,
-                wall: walls.facets[facet as usize].0,
-                depth: radius - closest.distance,
-                closest,
-            }));
+        for (place, (body, parts)) in self.near.iter().enumerate() {
+            let ball = Ball::of(*body as usize, bodies);
+            let reach = ball.radius + lacks_of(now, bodies.fruit[ball.body]);
+            find_hits(walls, parts, ball.centre, reach, &mut found);
+            let hits = found.iter().map(|&(facet, closest)| {
+                let wall = walls.facets[facet as usize].0;
+                let hit = Hit {
+                    depth: ball.radius - closest.distance,
+                    ball,
+                    before: ball,
+                    facet,
+                    wall,
+                    closest,
+                };
+                (place, hit)
+            });
+            all.extend(hits);
         }
         // The deepest first; of the same depth in the order of bodies.
-        all.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        all.sort_by(|a, b| b.1.depth.total_cmp(&a.1.depth));
         let mut kept: Vec<Hit> = Vec::new();
-        for hit in all {
-            let same = |own: &Hit| {
-                own.wall == hit.wall && dot(own.closest.normal, hit.closest.normal) > SAME_CONTACT
-            };
+        for (place, hit) in all {
+            let same = |own: &Hit| hit.is_beside(own.wall, own.closest.normal);
             if !kept.iter().any(same) {
-                kept.push(hit);
+                kept.push(hit.deepest(&self.near[place].1, bodies, walls, now));
             }
         }
+        kept.retain(|own| own.depth > 0.0);
         kept
     }
 
@@ -366,27 +356,28 @@ impl NearWalls {
         let (bodies, now) = (around.bodies, around.now);
         let mut before = std::mem::take(&mut self.contacts);
         let mut work = 0.0;
-        for hit in self.hits(bodies, around.walls) {
-            let goes_on = |own: &TouchingWall| {
-                own.wall == hit.wall && dot(own.normal, hit.closest.normal) > SAME_CONTACT
-            };
+        for hit in self.hits(bodies, around.walls, now) {
+            let goes_on = |own: &TouchingWall| hit.is_beside(own.wall, own.normal);
+            let ball = &hit.ball;
             let material = around.wall_materials[hit.wall as usize];
-            let surface = (around.surface)(bodies.material[hit.body], material);
-            let radius = bodies.place[hit.body][3];
+            let surface = (around.surface)(bodies.material[ball.body], material);
+            let radius = ball.radius;
             let shallow = hit.depth <= DEEPEST * radius;
             if !shallow {
                 let partner = around.walls.name_of(hit.wall);
                 return Err(too_deep(now.clock.time, fruit, partner, hit.depth, radius));
             }
-            let (velocity, spin) = motion(bodies, hit.body);
             let at = Flying {
-                centre: centre(bodies, hit.body),
+                centre: hit.before.centre,
                 radius,
-                velocity,
-                spin,
+                velocity: hit.before.velocity,
+                spin: ball.spin,
             };
-            let walls = around.walls;
-            let (touch, wall_velocity) = walls.meet(hit.facet, &hit.closest, &at, now.clock.step);
+            let (walls, step) = (around.walls, now.clock.step);
+            let (mut touch, wall_velocity) = walls.meet(hit.facet, &hit.closest, &at, step);
+            touch.radius = walls.facets[hit.facet as usize]
+                .1
+                .effective_radius(ball.curvature_radius, ball.centre);
             let mut own = match before.iter().position(goes_on) {
                 Some(place) => before.remove(place),
                 None => hit.begin(surface, &touch, bodies, now)?,
@@ -400,7 +391,7 @@ impl NearWalls {
             work += dot(mean, wall_velocity) * now.clock.step;
             (own.force, own.normal) = (force, touch.normal);
             let moment = scaled(cross(touch.normal, force), hit.closest.distance);
-            add_load(&mut loads[hit.body], force, add(moment, rolling));
+            ball.load(loads, force, add(moment, rolling));
             self.contacts.push(own);
         }
         for own in before {
@@ -415,11 +406,47 @@ impl NearWalls {
 }
 
 impl Hit {
+    /// Whether it is on the side of a wall that has this normal there.
+    fn is_beside(&self, wall: u32, normal: Vector) -> bool {
+        self.wall == wall && dot(self.closest.normal, normal) > SAME_CONTACT
+    }
+
+    /// The same side of the wall touched by the sphere of a spheroid that reaches deepest.
+    ///
+    /// * `near`: parts of walls near the body
+    fn deepest(self, near: &[NearPart], bodies: &Bodies, walls: &WallState, now: &Moment) -> Self {
+        let Some(spine) = self.ball.spine(bodies, now) else {
+            return self;
+        };
+        let nearest = |place: Vector| {
+            let parts = near.iter().map(|own| own.facet);
+            let own = parts.filter(|facet| walls.facets[*facet as usize].0 == self.wall);
+            let own = own.map(|facet| (facet, walls.closest(facet, place)));
+            let beside = own.filter(|(_, own)| self.is_beside(self.wall, own.normal));
+            let found = beside.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
+            found.unwrap_or((self.facet, self.closest))
+        };
+        let from = bodies.offset[self.ball.body][0];
+        let along = spine.deepest(from, |place| nearest(place).1.normal);
+        let ball = self.ball.at(along, &spine, bodies, now);
+        let (facet, closest) = nearest(ball.centre);
+        let earlier = |place: Vector| walls.closest_before(facet, place).normal;
+        let before = self.ball.before((along, &spine), bodies, now, earlier);
+        Self {
+            depth: ball.radius - closest.distance,
+            ball,
+            before,
+            facet,
+            closest,
+            ..self
+        }
+    }
+
     /// How they touch now, as a beginning.
     fn met(&self, touch: &Touch<f64>, bodies: &Bodies, clock: Clock) -> Encounter {
         Encounter {
             place: self.closest.point,
-            spot: spot_on(bodies, self.body, touch.normal),
+            spot: self.ball.spot(bodies, touch.normal),
             ..encounter(touch, clock)
         }
     }
@@ -431,7 +458,7 @@ impl Hit {
         bodies: &Bodies,
         now: &Moment,
     ) -> Result<TouchingWall, Error> {
-        let draws = &now.fruit[bodies.fruit[self.body] as usize].draws;
+        let draws = &now.fruit[bodies.fruit[self.ball.body] as usize].draws;
         let law = surface.law_of(touch.radius, draws, None)?;
         let scale = surface.scale(touch.radius);
         let parcel = Parcel::begin(

@@ -1,5 +1,6 @@
 //! Which bodies touch, what a contact remembers, and its force.
 
+pub(crate) mod ball;
 pub(crate) mod clump_contacts;
 pub(crate) mod contact;
 pub(crate) mod law_column;

@@ -115,6 +115,13 @@ impl WallState {
         facet.closest(placed.map(|(now, _)| now), place)
     }
 
+    /// The closest point of a part half a step ago.
+    pub(crate) fn closest_before(&self, facet: u32, place: Vector) -> Closest {
+        let (wall, facet) = &self.facets[facet as usize];
+        let placed = self.placed[*wall as usize].as_ref();
+        facet.closest(placed.map(|(_, before)| before), place)
+    }
+
     /// Adds the parts of walls that come closer to a place than `reach`, by number.
     pub(crate) fn find_near(&self, place: Vector, reach: f64, near: &mut Vec<u32>) {
         let first = near.len();

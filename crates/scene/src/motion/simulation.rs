@@ -17,6 +17,7 @@ use crate::line::HalfLine;
 use crate::motion::clump_motion::{Around, ClumpState};
 use crate::motion::gather::{Loads, Sums, Swept};
 use crate::scene::Scene;
+use crate::shape::clump::Clump;
 use crate::vector::{Rotation, Vector};
 
 /// A scene that runs.
@@ -55,7 +56,9 @@ pub struct Simulation {
     pub(crate) moved: f64,
     pub(crate) approach: f64,
     pub(crate) wall_way: f64,
+    /// How far apart bodies are listed, and what of that is needed without any motion; m.
     pub(crate) skin: f64,
+    pub(crate) lacks: f64,
     pub(crate) steps: u64,
     /// Fruit that has come, by number.
     pub(crate) released: usize,
@@ -114,6 +117,9 @@ impl Simulation {
         scene.check()?;
         scene.fruit.sort_by(|a, b| a.time.total_cmp(&b.time));
         let mean = scene.fruit.iter().map(|fruit| fruit.radius).sum::<f64>();
+        // Surfaces of ovate fruit lie a little outside of the spheres by which they are listed.
+        let clumps = scene.fruit.iter().filter_map(|fruit| fruit.clump.as_ref());
+        let lacks = 2.0 * clumps.map(Clump::lacks).fold(0.0, f64::max);
         let skin = SKIN * mean / scene.fruit.len().max(1) as f64;
         let keys: Vec<(usize, usize)> = scene.interactions.keys().copied().collect();
         let materials = scene.materials.len();
@@ -145,7 +151,8 @@ impl Simulation {
             moved: f64::INFINITY,
             approach: f64::INFINITY,
             wall_way: 0.0,
-            skin,
+            skin: skin + lacks,
+            lacks,
             steps: 0,
             released: 0,
             events: Vec::new(),
@@ -282,7 +289,8 @@ impl Simulation {
 
     /// Sums forces and integrates the motion of all bodies.
     pub(crate) fn push(&mut self, with_energy: bool) -> Result<Energy, Error> {
-        if self.approach > self.skin || self.moved + self.wall_way > self.skin {
+        let skin = self.skin - self.lacks;
+        if self.approach > skin || self.moved + self.wall_way > skin {
             self.rebuild();
         }
         let (time, step) = (self.time(), self.scene.time_step);

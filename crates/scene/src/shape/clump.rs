@@ -1,5 +1,6 @@
 //! Fruit that are no spheres: rigid clumps of spheres.
 
+use crate::shape::spheroid::Spheroid;
 use crate::vector::{Rotation, UNTURNED, Vector, dot, turned, turned_back};
 use std::f64::consts::PI;
 
@@ -12,13 +13,16 @@ pub struct Clump {
     pub moments: Vector,
     /// Orientation at first.
     pub turn: Rotation,
+    /// The spheroid along the first axis that the spheres fill, where it is one: contacts are those
+    /// of its surface.
+    pub spheroid: Option<Spheroid>,
 }
 
 impl Clump {
-    /// An ovate fruit: spheres along the axis of a spheroid, each as large as fits in.
+    /// An ovate fruit: spheres along the axis of a spheroid, each as large as fits in. They tell
+    /// what may be near it; it touches with the spheroid's own surface.
     ///
-    /// The outermost have the curvature of the tips, b²/a; between two of them the surface
-    /// lacks a little. The moments are those of the spheroid.
+    /// The outermost have the curvature of the tips, b²/a. The moments are those of the spheroid.
     ///
     /// * `length`, `diameter`: along the axis (x) and across it; m
     /// * `mass`: kg
@@ -31,19 +35,36 @@ impl Clump {
         if !long {
             return None;
         }
-        let focal = a * a - b * b;
-        let outermost = focal / a;
+        let own = Spheroid { long: a, wide: b };
         let sphere = |number: usize| {
             let share = 2.0 * number as f64 / (count - 1) as f64 - 1.0;
-            let x = outermost * share;
-            ([x, 0.0, 0.0], b * (1.0 - x * x / focal).max(0.0).sqrt())
+            let x = own.reach() * share;
+            ([x, 0.0, 0.0], own.radius(x))
         };
         let across = 0.05 * mass * (length * length + diameter * diameter);
         Some(Self {
             spheres: (0..count).map(sphere).collect(),
             moments: [0.1 * mass * diameter * diameter, across, across],
             turn: UNTURNED,
+            spheroid: Some(own),
         })
+    }
+
+    /// How far below the surface of its spheroid that of its spheres lies at most; 0 where it is
+    /// none; m.
+    pub fn lacks(&self) -> f64 {
+        let Some(Spheroid { long: a, wide: b }) = self.spheroid else {
+            return 0.0;
+        };
+        let pairs = self.spheres.windows(2).map(|pair| {
+            let ([x, ..], r) = pair[0];
+            let ([u, ..], s) = pair[1];
+            // Where two spheres meet, along the axis and off it.
+            let along = 0.5 * (x + u) + 0.5 * (r * r - s * s) / (u - x);
+            let off = (r * r - (along - x) * (along - x)).max(0.0).sqrt();
+            b * (1.0 - along * along / (a * a)).max(0.0).sqrt() - off
+        });
+        pairs.fold(0.0, f64::max)
     }
 
     /// Angular momentum; kg m²/s.
@@ -86,22 +107,6 @@ impl Clump {
 mod tests {
     use super::*;
 
-    /// How far the surface lies below that of the spheroid where it lacks most; m.
-    ///
-    /// * `length`, `diameter`: of the spheroid; m
-    fn lacks(clump: &Clump, length: f64, diameter: f64) -> f64 {
-        let (a, b) = (0.5 * length, 0.5 * diameter);
-        let pairs = clump.spheres.windows(2).map(|pair| {
-            let ([x, ..], r) = pair[0];
-            let ([u, ..], s) = pair[1];
-            // Where two spheres meet, along the axis and off it.
-            let along = 0.5 * (x + u) + 0.5 * (r * r - s * s) / (u - x);
-            let off = (r * r - (along - x) * (along - x)).max(0.0).sqrt();
-            b * (1.0 - along * along / (a * a)).max(0.0).sqrt() - off
-        });
-        pairs.fold(0.0, f64::max)
-    }
-
     #[test]
     fn closed_form_spheres_in_a_spheroid() {
         let (length, diameter) = (0.1, 0.06);
@@ -126,7 +131,7 @@ mod tests {
         // Made with Python from the same geometry.
         for (count, wanted) in [(5, 2.703998331981816e-3), (17, 3.037614676645057e-4)] {
             let own = Clump::spheroid(length, diameter, 0.2, count).unwrap();
-            assert!((lacks(&own, length, diameter) - wanted).abs() < 1e-15);
+            assert!((own.lacks() - wanted).abs() < 1e-15);
         }
     }
 

@@ -5,5 +5,6 @@ pub(crate) mod facet_tree;
 pub mod mesh;
 pub mod motion;
 pub(crate) mod placed;
+pub mod spheroid;
 pub mod surface;
 pub mod wall;
