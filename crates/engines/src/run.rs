@@ -91,6 +91,13 @@ struct Ready {
 fn ready(path: &Path, engine: Engine, request: &DeckRequest) -> Result<Ready, Error> {
     let mut plan = read_scene(path)?;
     let step = time_step(&mut plan)?;
+    if let Some(start) = &plan.start {
+        let problem = format!(
+            "it cannot begin at the end of another run ([scene] start = \"{}\"); --engine windfall can",
+            start.name
+        );
+        return Err(wrong(engine, problem));
+    }
     if plan.scene.fruit.iter().any(|fruit| fruit.clump.is_some()) {
         let problem = "it cannot represent this scene (--engine windfall can): its ovate fruit touch \
                        a partner once, where the deepest of their spheres does, and the engine's \

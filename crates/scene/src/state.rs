@@ -275,6 +275,18 @@ impl Simulation {
         Ok(simulation)
     }
 
+    /// Begins a scene at the end of another one, with its time and an energy account of its own. The
+    /// other one may have had another time step: velocities are of half a step before its end.
+    ///
+    /// # Errors
+    /// The scene cannot be, see [`Scene::check`]; the state is of a scene with other fruit or walls.
+    pub fn start(scene: Scene, state: &State, time: f64) -> Result<Self, Error> {
+        let mut simulation = Self::resume(scene, state)?;
+        simulation.steps = (time / simulation.scene.time_step).round() as u64;
+        simulation.account = Account::default();
+        Ok(simulation)
+    }
+
     /// Fruit of a state, by number, in place of those that are there.
     fn enter_all(&mut self, fruit: &[FruitState]) {
         self.bodies = Bodies::default();

@@ -11,11 +11,12 @@ use crate::file::room::{check_room, drawn_fruit};
 use crate::file::scene::{AirFile, GravityFile, SceneFile};
 use crate::file::walls::wall_of;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_cards::law_card::LawCard;
+use windfall_files::confined::named_beside;
 use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::toml_source::{TomlSource, parse_source, place_at, read_piped_source};
@@ -55,6 +56,21 @@ pub struct ScenePlan {
     pub checkpoint: Option<f64>,
     /// Seed of all draws.
     pub seed: u64,
+    /// The run at whose end it begins, where it does.
+    pub start: Option<StartPlan>,
+}
+
+/// The end of a run, where another one begins.
+#[derive(Clone, Debug)]
+pub struct StartPlan {
+    /// As the file has it.
+    pub name: String,
+    /// Where the file names it.
+    pub place: Place,
+    /// The directory of that run.
+    pub directory: PathBuf,
+    /// When that run ended; s. 0 until it is read.
+    pub time: f64,
 }
 
 /// Reads a scene and draws its fruit.
@@ -143,6 +159,35 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         findings,
         checkpoint: checkpoint(&table, &file)?,
         seed,
+        start: file
+            .scene
+            .start
+            .as_ref()
+            .map(|own| start_of(&table, own))
+            .transpose()?,
+    })
+}
+
+/// Name in the directory of a run of the state at its end.
+pub const END_FILE: &str = "end.bin";
+
+fn start_of(table: &Section, name: &Spanned<String>) -> Result<StartPlan, Error> {
+    let text = name.get_ref();
+    let directory = table.source.path.with_file_name(text);
+    let wrong = |problem: String| table.refused(&name.span(), "start", text, problem);
+    if !directory.join(END_FILE).exists() {
+        return Err(wrong(format!(
+            "{} holds no end of a run ({END_FILE}): it is the directory of results of another scene, \
+             which `windfall scene run` writes unless that scene has checkpoint = \"never\"",
+            directory.display()
+        )));
+    }
+    named_beside(&table.source.path, &format!("{text}/{END_FILE}")).map_err(wrong)?;
+    Ok(StartPlan {
+        name: text.clone(),
+        place: place_at(table.source, &name.span()),
+        directory,
+        time: 0.0,
     })
 }
 

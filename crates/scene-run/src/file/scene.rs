@@ -47,6 +47,8 @@ pub struct SceneFile {
 #[serde(deny_unknown_fields)]
 pub struct SceneSection {
     pub title: Option<String>,
+    /// The run at whose end this one begins.
+    pub start: Option<Spanned<String>>,
     /// Seed of all draws.
     pub seed: Option<u64>,
     /// Gravity: downward, or a vector.

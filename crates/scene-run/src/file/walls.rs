@@ -226,15 +226,15 @@ fn motion_of(table: &Section, file: &WallFile) -> Result<Motion, Error> {
     if let Some(turn) = &file.rotation {
         let about = axis_of(table, turn)?;
         let own = turn.get_ref();
-        let (Some(spin), None) = (&own.angular_velocity, &own.angle) else {
-            let problem = "a wall that always turns has an `angular_velocity`; an `angle` belongs to \
-                           a rotation in [[moves]]";
-            return Err(table.refused(
-                &turn.span(),
-                "rotation",
-                table.written(&turn.span()),
-                problem,
-            ));
+        if let Some(angle) = &own.angle {
+            let problem = "a wall that always turns has an angular_velocity; an angle belongs to a \
+                           rotation in [[moves]]";
+            return Err(table.refused(&angle.span(), "rotation angle", angle.get_ref(), problem));
+        }
+        let Some(spin) = &own.angular_velocity else {
+            let problem = "it needs an angular_velocity, such as \"1 rad/s\"";
+            let text = table.written(&turn.span());
+            return Err(table.refused(&turn.span(), "rotation", text, problem));
         };
         all.push(How::Rotation {
             about,

@@ -3,11 +3,12 @@
 use crate::bruise::scene::Blows;
 use crate::file::read::ScenePlan;
 use crate::run::checkpoint::{
-    CheckpointHead, Parts, changed_parts, checkpoint_head, checkpoint_path, damaged, parts_of,
-    read_checkpoint, remove_checkpoint, write_checkpoint,
+    CheckpointHead, Parts, changed_parts, check_checkpoint, checkpoint_head, checkpoint_path,
+    damaged, parts_of, read_checkpoint, remove_checkpoint, write_checkpoint,
 };
 use crate::run::frames::SceneRecorder;
 use crate::run::outcome::Tally;
+use crate::run::start::{begin_at, end_path};
 use crate::run::tables::{EventFile, is_written};
 use crate::run_error::SceneRunError;
 use std::io::{Read, Result as IoResult};
@@ -85,6 +86,8 @@ pub struct SceneRun {
     pub tally: Tally,
     /// Contacts that may bruise.
     pub blows: Option<Blows>,
+    /// Steps that the scene had made when it began.
+    pub before: u64,
     /// What the energy account lacked at the first step; J.
     pub first_closure: f64,
     checkpoint: PathBuf,
@@ -135,11 +138,19 @@ impl SceneRun {
         if start == SceneStart::Resume && stopped {
             return Self::resumed(plan, (checkpoint, &events), directory, parts);
         }
-        let simulation = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
+        let (simulation, left) = match &plan.start {
+            Some(start) => begin_at(plan, start)?,
+            None => {
+                let new = Simulation::new(plan.scene.clone()).map_err(stopped_scene)?;
+                (new, Vec::new())
+            }
+        };
         remove_checkpoint(&checkpoint)?;
+        check_checkpoint(&end_path(directory))?;
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
         let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
+        left.iter().for_each(|gone| own.tally.leave(gone));
         let seen = own.frames.take(&own.simulation, &own.tally);
         seen.map_err(|error| own.told(error))?;
         if !mover.goes_on() {
@@ -157,6 +168,7 @@ impl SceneRun {
         (checkpoint, parts): (PathBuf, Parts),
     ) -> Self {
         let step = plan.scene.time_step;
+        let begun = plan.start.as_ref().map_or(0.0, |own| own.time);
         let bruise = plan.bruise.as_ref();
         Self {
             simulation,
@@ -164,6 +176,7 @@ impl SceneRun {
             frames,
             tally: Tally::new(plan),
             blows: bruise.map(|own| Blows::new(own, &plan.scene, &plan.fruit_shares)),
+            before: (begun / step).round() as u64,
             first_closure: 0.0,
             checkpoint,
             parts,
@@ -314,6 +327,11 @@ impl SceneRun {
             }),
             other => other,
         }
+    }
+
+    /// Whether states of it are kept.
+    pub(crate) fn keeps_states(&self) -> bool {
+        self.every.is_some()
     }
 
     /// Ends the run: renames the table and removes the checkpoint.

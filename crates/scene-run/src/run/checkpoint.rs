@@ -68,6 +68,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         given_step: _,
         findings: _,
         seed,
+        start,
     } = plan;
     let Scene {
         materials,
@@ -93,6 +94,10 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         part("[record]", record),
         part("[bruise]", bruise),
         part("the seed", seed),
+        part(
+            "the start",
+            &start.as_ref().map(|own| (&own.name, own.time)),
+        ),
     ];
     for (pair, interaction) in interactions {
         let name = format!(
@@ -119,7 +124,7 @@ impl std::fmt::Write for Fed {
     }
 }
 
-fn part(name: &str, value: &dyn std::fmt::Debug) -> (String, String) {
+pub(crate) fn part(name: &str, value: &dyn std::fmt::Debug) -> (String, String) {
     let mut fed = Fed(Sha256::new());
     // A digest takes everything.
     let _ = std::fmt::Write::write_fmt(&mut fed, format_args!("{value:?}"));

@@ -22,6 +22,8 @@ pub struct SceneRecorder(Option<FrameFile>);
 struct FrameFile {
     file: GrowingFile,
     interval: f64,
+    /// When the scene begins; s.
+    start: f64,
     /// Frames so far, and the step of the last one.
     frames: u64,
     last: u64,
@@ -35,7 +37,7 @@ impl SceneRecorder {
             return Ok(Self(None));
         };
         let start = start_of(plan, interval)?;
-        let mut own = FrameFile::open(out, interval, [0; 3])?;
+        let mut own = FrameFile::open(out, (interval, begins(plan)), [0; 3])?;
         own.file.write(start)?;
         Ok(Self(Some(own)))
     }
@@ -65,7 +67,11 @@ impl SceneRecorder {
             std::fs::rename(&path, &partial).map_err(access(&path, "write"))?;
         }
         GrowingFile::check_length(&path, "the file of frames", kept[0])?;
-        Ok(Self(Some(FrameFile::open(out, interval, kept)?)))
+        Ok(Self(Some(FrameFile::open(
+            out,
+            (interval, begins(plan)),
+            kept,
+        )?)))
     }
 
     /// Whether what is not finished stays.
@@ -121,12 +127,17 @@ pub fn remove_frames(out: &Path) -> Result<(), Error> {
 
 impl FrameFile {
     /// A file of which some is there; what is behind is cut off.
-    fn open(out: &Path, interval: f64, [length, frames, last]: [u64; 3]) -> Result<Self, Error> {
+    fn open(
+        out: &Path,
+        (interval, start): (f64, f64),
+        [length, frames, last]: [u64; 3],
+    ) -> Result<Self, Error> {
         let mut file = GrowingFile::open(&out.join(FRAMES_FILE))?;
         file.cut(length)?;
         Ok(Self {
             file,
             interval,
+            start,
             frames,
             last,
             bytes: Vec::new(),
@@ -135,7 +146,7 @@ impl FrameFile {
 
     /// The step of the next frame.
     fn due(&self, simulation: &Simulation) -> u64 {
-        let time = self.frames as f64 * self.interval;
+        let time = self.start + self.frames as f64 * self.interval;
         // A step that falls on the time but for rounding is the one.
         (time / simulation.scene.time_step - 1e-6).ceil() as u64
     }
@@ -150,6 +161,11 @@ impl FrameFile {
         self.last = simulation.steps();
         Ok(())
     }
+}
+
+/// When a scene begins; s.
+fn begins(plan: &ScenePlan) -> f64 {
+    plan.start.as_ref().map_or(0.0, |own| own.time)
 }
 
 /// What stands before the frames.

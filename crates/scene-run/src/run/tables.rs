@@ -264,11 +264,15 @@ const PARTNERS_CSV: [Column<PartnerOutcome>; 15] = [
 pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     let step = &outcome.step;
     let mut text = format!(
-        "{}\n\n{} fruit over {} s in {} steps of {} µs: peak forces of {} and {} at {} m/s err by \
+        "{}\n\n{} fruit {} {} s in {} steps of {} µs: peak forces of {} and {} at {} m/s err by \
          {} %, absorbed energies by {} % of the impact energy.\n{} contacts, {} of them written; \
          {} fruit left. The energy account closes to {} % of what was lost.\n\n",
         outcome.title,
         outcome.fruit,
+        outcome.start.map_or("over".to_owned(), |own| format!(
+            "from {} s to",
+            number(own)
+        )),
         outcome.end,
         outcome.steps,
         number(1e6 * step.time_step),

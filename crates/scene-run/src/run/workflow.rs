@@ -10,6 +10,7 @@ use crate::run::frame_format::FRAMES_FILE;
 use crate::run::frames::remove_frames;
 use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
 use crate::run::outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
+use crate::run::start::{find_start, remove_end, save_end};
 use crate::run::tables::fruit_table;
 use std::path::{Path, PathBuf};
 use windfall_draw::files::{FigureFolder, write_figure};
@@ -97,7 +98,9 @@ pub fn run_plan(
     start: SceneStart,
     progress: Progress,
 ) -> Result<RunOfScene, Error> {
-    let step = time_step(&mut plan)?;
+    let mut step = time_step(&mut plan)?;
+    find_start(&mut plan, out)?;
+    step.time_step = plan.scene.time_step;
     let moved = Moved {
         mover: &mut Own,
         step,
@@ -163,6 +166,11 @@ fn write_results(
     let histograms = histograms_of(tally, bruises.as_deref());
     let mut files = vec![events, fruit];
     files.extend(frames);
+    match run.keeps_states() {
+        true => files.push(save_end(plan, &mut run.simulation, &run.tally, out)?),
+        false => remove_end(out)?,
+    }
+    let (simulation, tally) = (&run.simulation, &run.tally);
     files.push(summary.clone());
     let figure = figure_of_histograms(&plan.title, &histograms);
     files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
@@ -170,10 +178,11 @@ fn write_results(
     let energy_closure = lacks / last.lost().abs().max(f64::MIN_POSITIVE);
     let outcome = SceneOutcome {
         title: plan.title.clone(),
+        start: plan.start.as_ref().map(|own| own.time),
         end: plan.end,
         engine: moved.engine.clone(),
         step: moved.step.clone(),
-        steps: (simulation.steps() - 1) * moved.mover.steps(),
+        steps: (simulation.steps() - 1 - run.before) * moved.mover.steps(),
         fruit: plan.scene.fruit.len(),
         waiting: simulation.waiting(),
         left: tally.left(),

@@ -259,6 +259,11 @@ impl Motion {
         (placed.turn, placed.outward([0.0; 3]))
     }
 
+    /// Where a point of the wall at rest is at a time; m.
+    pub fn moved(&self, point: Vector, time: f64) -> Vector {
+        self.at(time).outward(point)
+    }
+
     pub(crate) fn at(&self, time: f64) -> Placed {
         let mut found = Placed {
             shift: [0.0; 3],

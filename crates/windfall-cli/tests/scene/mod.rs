@@ -5,6 +5,7 @@
 mod engines;
 mod moves;
 mod run;
+mod start;
 mod study;
 mod view;
 mod walls;
