@@ -230,6 +230,16 @@ pub fn run_on_engine(
         return Err(wrong(own.engine, problem.to_owned()));
     }
     let steps = ready.frame_steps;
+    let steps_time = steps as f64 * plan.scene.time_step;
+    if let Some(probe) = plan.sensors.probe() {
+        let problem = format!(
+            "its frames say where fruit are, not what they feel: the probe \"{}\" of [[sensors]] needs \
+             --engine windfall; planes, plates and boxes work here too",
+            probe.name
+        );
+        return Err(wrong(own.engine, problem));
+    }
+    plan.sensors.check_step(steps_time)?;
     let (mut frames, name) = match &own.frames {
         Some(file) => {
             if !file.is_file() {

@@ -16,6 +16,7 @@ pub(crate) mod record;
 pub(crate) mod regression;
 pub(crate) mod room;
 pub(crate) mod scene;
+pub mod sensors;
 pub(crate) mod step;
 pub(crate) mod stl;
 pub(crate) mod walls;

@@ -9,6 +9,7 @@ use crate::file::properties::{in_order, with_properties};
 use crate::file::record::{RecordPlan, record_of};
 use crate::file::room::{check_room, drawn_fruit};
 use crate::file::scene::{AirFile, GravityFile, SceneFile};
+use crate::file::sensors::{Kinds, SensorsPlan, sensors_of};
 use crate::file::walls::wall_of;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -46,6 +47,8 @@ pub struct ScenePlan {
     pub least_peak_force: f64,
     /// Recorded frames.
     pub record: RecordPlan,
+    /// What looks at the fruit.
+    pub sensors: SensorsPlan,
     /// How contacts bruise, where the file says so.
     pub bruise: Option<BruisePlan>,
     /// The time step of the file, and its place.
@@ -143,6 +146,12 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         problem: problem.to_string(),
     })?;
     check_room(source, &file, &scene, &names)?;
+    let of_kinds = Kinds {
+        names: &names,
+        kind_of: &kind_of,
+        fruit: &scene.fruit,
+    };
+    let sensors = sensors_of(source, &file.sensors, &of_kinds, timing.end)?;
     let title = file.scene.title.clone();
     Ok(ScenePlan {
         title: title.unwrap_or_else(|| source.path.display().to_string()),
@@ -154,6 +163,7 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
         end: timing.end,
         least_peak_force: timing.least_peak_force,
         record: record_of(source, &file.record)?,
+        sensors,
         bruise,
         given_step: timing.given,
         findings,

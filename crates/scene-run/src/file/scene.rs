@@ -38,6 +38,9 @@ pub struct SceneFile {
     /// Recorded frames.
     #[serde(default)]
     pub record: crate::file::record::RecordFile,
+    /// What looks at the fruit.
+    #[serde(default)]
+    pub sensors: Vec<Spanned<crate::file::sensors::SensorFile>>,
     /// How contacts bruise.
     pub bruise: Option<Spanned<BruiseFile>>,
 }

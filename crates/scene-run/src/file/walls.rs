@@ -165,7 +165,8 @@ fn flat(table: &Section, shape: &Spanned<impl Sized>, key: &str, wall: &str) -> 
     table.refused(&shape.span(), key, wall, problem)
 }
 
-fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Shape, Error> {
+/// An endless plane.
+pub fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Shape, Error> {
     let PlaneFile { point, normal } = *plane.get_ref();
     let normal = unit(normal).ok_or_else(|| flat(table, plane, "plane normal", wall))?;
     Ok(Shape::Plane { point, normal })
@@ -174,7 +175,8 @@ fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<S
 /// Sine of the angle of edges below which they are parallel; 1.
 const FLAT: f64 = 1e-9;
 
-fn plate_of(table: &Section, plate: &Spanned<PlateFile>, wall: &str) -> Result<Shape, Error> {
+/// A parallelogram.
+pub fn plate_of(table: &Section, plate: &Spanned<PlateFile>, wall: &str) -> Result<Shape, Error> {
     let PlateFile { corner, edges } = *plate.get_ref();
     let [a, b] = edges;
     match length(cross(a, b)) > FLAT * length(a) * length(b) {

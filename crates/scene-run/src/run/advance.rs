@@ -8,6 +8,7 @@ use crate::run::checkpoint::{
 };
 use crate::run::frames::SceneRecorder;
 use crate::run::outcome::Tally;
+use crate::run::sensors::watch::Sensors;
 use crate::run::start::{begin_at, end_path};
 use crate::run::tables::{EventFile, is_written};
 use crate::run_error::SceneRunError;
@@ -82,6 +83,8 @@ pub struct SceneRun {
     pub table: EventFile,
     /// Recorded frames.
     pub frames: SceneRecorder,
+    /// What looks at the fruit.
+    pub sensors: Sensors,
     /// What happened.
     pub tally: Tally,
     /// Contacts that may bruise.
@@ -149,22 +152,25 @@ impl SceneRun {
         check_checkpoint(&end_path(directory))?;
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
-        let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
+        let sensors = Sensors::open(plan, directory, None)?;
+        let files = (table, frames, sensors);
+        let mut own = Self::new(plan, simulation, files, (checkpoint, parts));
         left.iter().for_each(|gone| own.tally.leave(gone));
-        let seen = own.frames.take(&own.simulation, &own.tally);
-        seen.map_err(|error| own.told(error))?;
+        own.look().map_err(|error| own.told(error))?;
         if !mover.goes_on() {
             own.every = None;
         }
         let first = mover.step(&mut own.simulation)?;
         own.first_closure = first.closure();
+        let seen = own.sensors.take(&own.simulation);
+        seen.map_err(|error| own.told(error))?;
         Ok(own)
     }
 
     fn new(
         plan: &ScenePlan,
         simulation: Simulation,
-        (table, frames): (EventFile, SceneRecorder),
+        (table, frames, sensors): (EventFile, SceneRecorder, Sensors),
         (checkpoint, parts): (PathBuf, Parts),
     ) -> Self {
         let step = plan.scene.time_step;
@@ -174,6 +180,7 @@ impl SceneRun {
             simulation,
             table,
             frames,
+            sensors,
             tally: Tally::new(plan),
             blows: bruise.map(|own| Blows::new(own, &plan.scene, &plan.fruit_shares)),
             before: (begun / step).round() as u64,
@@ -206,6 +213,7 @@ impl SceneRun {
                 |error: std::io::Error| damaged(&path, format!("the checkpoint is {error}"));
             let (length, written) = Binary::read(from).map_err(unread)?;
             let frames = Binary::read(from).map_err(unread)?;
+            let sensors = Binary::read(from).map_err(unread)?;
             let closure = f64::read(from).map_err(unread)?;
             let state = State::read(from).map_err(unread)?;
             let simulation = Simulation::resume(plan.scene.clone(), &state)
@@ -214,7 +222,9 @@ impl SceneRun {
             let least = plan.least_peak_force;
             let table = EventFile::resume(events, &plan.scene, least, (length, written))?;
             let frames = SceneRecorder::resume(plan, directory, frames)?;
-            let mut own = Self::new(plan, simulation, (table, frames), (checkpoint, parts));
+            let sensors = Sensors::open(plan, directory, Some(sensors))?;
+            let files = (table, frames, sensors);
+            let mut own = Self::new(plan, simulation, files, (checkpoint, parts));
             own.take_counts(from).map_err(unread)?;
             (own.first_closure, own.kept) = (closure, Some(head.time));
             Ok(own)
@@ -223,6 +233,7 @@ impl SceneRun {
 
     fn take_counts(&mut self, from: &mut dyn Read) -> IoResult<()> {
         self.tally.take_up(from)?;
+        self.sensors.take_up(from)?;
         self.blows.iter_mut().try_for_each(|own| own.take_up(from))
     }
 
@@ -253,14 +264,16 @@ impl SceneRun {
             let to_checkpoint = self.every.map_or(u64::MAX, |every| every - steps % every);
             let most = CHUNK.min(self.all - steps).min(to_checkpoint);
             let steps = self.frames.steps(&self.simulation, most);
+            let steps = self.sensors.steps(&self.simulation, steps);
             mover.run(&mut self.simulation, steps)?;
             for event in self.simulation.take_events() {
                 self.count(&event)?;
             }
             for leaving in self.simulation.take_leavings() {
                 self.tally.leave(&leaving);
+                self.sensors.leave(&leaving)?;
             }
-            self.frames.take(&self.simulation, &self.tally)?;
+            self.look()?;
             let steps = self.simulation.steps();
             if self.every.is_some_and(|every| steps.is_multiple_of(every)) && steps < self.all {
                 self.save()?;
@@ -272,10 +285,17 @@ impl SceneRun {
         Ok(())
     }
 
+    /// Writes a frame, and what sensors see, where they are due.
+    fn look(&mut self) -> Result<(), Error> {
+        self.frames.take(&self.simulation, &self.tally)?;
+        self.sensors.take(&self.simulation)
+    }
+
     /// Counts a load. One that does not come and go does not bruise as a blow does.
     pub fn count(&mut self, event: &Event) -> Result<(), Error> {
         let scene = &self.simulation.scene;
         let lasted = self.tally.count(scene, event);
+        self.sensors.load(event);
         if let Some(blows) = self.blows.as_mut().filter(|_| !lasted) {
             blows.count(scene, event);
         }
@@ -288,6 +308,7 @@ impl SceneRun {
         // What the checkpoint counts on is on the disk before it.
         let table = (self.table.sync()?, self.table.written());
         let frames = self.frames.sync()?;
+        let sensors = self.sensors.sync()?;
         let head = CheckpointHead {
             time,
             end: self.end,
@@ -296,15 +317,18 @@ impl SceneRun {
         let saved = write_checkpoint(&self.checkpoint, &head, |to| {
             table.write(to)?;
             frames.write(to)?;
+            sensors.write(to)?;
             self.first_closure.write(to)?;
             state.write(to)?;
             self.tally.save(to)?;
+            self.sensors.save(to)?;
             self.blows.iter().try_for_each(|own| own.save(to))
         });
         self.parts = head.parts;
         saved?;
         self.table.keep(true);
         self.frames.keep(true);
+        self.sensors.keep(true);
         self.kept = Some(time);
         Ok(())
     }
@@ -345,6 +369,7 @@ impl SceneRun {
     fn leave_nothing(&mut self) {
         self.table.keep(false);
         self.frames.keep(false);
+        self.sensors.keep(false);
         let _ = remove_checkpoint(&self.checkpoint);
         self.kept = None;
     }

@@ -21,7 +21,7 @@ use windfall_scene::scene::Scene;
 const MAGIC: [u8; 8] = *b"WFSCENE\n";
 
 /// Version of its shape.
-const SHAPE: u32 = 4;
+const SHAPE: u32 = 5;
 
 /// Name in the directory of the results.
 const NAME: &str = "checkpoint.bin";
@@ -63,6 +63,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         end,
         least_peak_force,
         record,
+        sensors,
         bruise,
         checkpoint,
         given_step: _,
@@ -92,6 +93,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         part("the times of checkpoints", checkpoint),
         part("[events]", least_peak_force),
         part("[record]", record),
+        part("[[sensors]]", &sensors.all),
         part("[bruise]", bruise),
         part("the seed", seed),
         part(

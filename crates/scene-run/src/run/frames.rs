@@ -6,7 +6,7 @@ use crate::geometry::geometry_of;
 use crate::run::frame_format::{
     FRAMES_FILE, Frame, FramesAbout, FruitFrame, MAGIC, VERSION, WallFrame, encode_frame,
 };
-use crate::run::growing::{GrowingFile, partial_of};
+use crate::run::growing::{GrowingFile, take_back};
 use crate::run::outcome::Tally;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -61,11 +61,7 @@ impl SceneRecorder {
             return Ok(Self(None));
         };
         let path = out.join(FRAMES_FILE);
-        let partial = partial_of(&path);
-        // A run that was stopped on its last steps had given the file its name already.
-        if !partial.exists() && path.is_file() {
-            std::fs::rename(&path, &partial).map_err(access(&path, "write"))?;
-        }
+        take_back(&path)?;
         GrowingFile::check_length(&path, "the file of frames", kept[0])?;
         Ok(Self(Some(FrameFile::open(
             out,

@@ -3,11 +3,11 @@
 use crate::file_error::access;
 use crate::run::checkpoint::damaged;
 use std::fs::{File, TryLockError};
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::write_file::check_target;
-use windfall_files::written::{check_plain, list_written_as};
+use windfall_files::written::{check_plain, check_written, list_written_as};
 
 /// A growing file. Dropped before it is whole, it is removed unless a checkpoint needs it.
 pub(crate) struct GrowingFile {
@@ -22,6 +22,33 @@ pub(crate) fn partial_of(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".partial");
     PathBuf::from(name)
+}
+
+/// Gives a file that was finished its other name again. A run that was stopped on its last
+/// steps had finished some already.
+///
+/// # Errors
+/// It cannot be renamed.
+pub(crate) fn take_back(path: &Path) -> Result<(), Error> {
+    let partial = partial_of(path);
+    match !partial.exists() && path.is_file() {
+        true => std::fs::rename(path, &partial).map_err(access(path, "write")),
+        false => Ok(()),
+    }
+}
+
+/// Removes a file of an earlier run, if windfall wrote it; a file of somebody else stays.
+///
+/// # Errors
+/// It cannot be removed.
+pub(crate) fn remove_earlier(path: &Path) -> Result<(), Error> {
+    if check_written(path, None).is_err() {
+        return Ok(());
+    }
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(access(path, "replace")(error)),
+        _ => Ok(()),
+    }
 }
 
 impl GrowingFile {

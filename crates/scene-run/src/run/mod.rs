@@ -8,6 +8,7 @@ mod growing;
 pub(crate) mod histogram;
 pub(crate) mod levels;
 pub mod outcome;
+pub mod sensors;
 pub(crate) mod start;
 mod static_load;
 pub mod tables;

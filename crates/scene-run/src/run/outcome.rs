@@ -5,6 +5,7 @@ use crate::file::key::FRUIT;
 use crate::file::read::ScenePlan;
 use crate::run::histogram::HistogramOutcome;
 use crate::run::levels::Levels;
+use crate::run::sensors::outcome::SensorOutcome;
 use crate::run::static_load::StaticLoads;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -48,6 +49,8 @@ pub struct SceneOutcome {
     pub partners: Vec<PartnerOutcome>,
     /// How fruit are distributed over the hardest that each suffered.
     pub histograms: Vec<HistogramOutcome>,
+    /// What each sensor saw.
+    pub sensors: Vec<SensorOutcome>,
     /// How many fruit are bruised, and where; where the scene says what bruises.
     pub bruise: Option<BruiseOutcome>,
     /// Energies at the end.

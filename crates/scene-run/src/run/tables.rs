@@ -6,6 +6,7 @@ use crate::file::key::FRUIT;
 use crate::file::read::ScenePlan;
 use crate::run::growing::{GrowingFile, partial_of};
 use crate::run::outcome::{PartnerOutcome, SceneOutcome, Tally};
+use crate::run::sensors::text::text_of_sensors;
 use crate::run_error::SceneRunError;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -293,6 +294,7 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     if let Some(bruise) = &outcome.bruise {
         text += &text_of_bruises(bruise);
     }
+    text += &text_of_sensors(&outcome.sensors);
     for finding in &outcome.findings {
         text += &format!("\n{}: {}\n", finding.code, finding.message);
     }

@@ -10,6 +10,8 @@ use crate::run::frame_format::FRAMES_FILE;
 use crate::run::frames::remove_frames;
 use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
 use crate::run::outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, findings_of_range};
+use crate::run::sensors::figure::figure_of_sensors;
+use crate::run::sensors::watch::Sensors;
 use crate::run::start::{find_start, remove_end, save_end};
 use crate::run::tables::fruit_table;
 use std::path::{Path, PathBuf};
@@ -130,6 +132,7 @@ pub fn run_moved(
     ] {
         check_target(&out.join(name))?;
     }
+    Sensors::check_figure(&plan.sensors, out)?;
     let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
     run.run_to_end(moved.mover, progress)?;
     let last = moved.mover.step(&mut run.simulation)?;
@@ -156,6 +159,7 @@ fn write_results(
     if frames.is_none() {
         remove_frames(out)?;
     }
+    let sensor_tables = run.sensors.finish(&run.simulation, out)?;
     let (simulation, tally) = (&run.simulation, &run.tally);
     let bruised = plan.bruise.as_ref().zip(run.blows.as_ref());
     let bruises = bruised.map(|(bruise, blows)| blows.bruises(bruise));
@@ -172,8 +176,12 @@ fn write_results(
     }
     let (simulation, tally) = (&run.simulation, &run.tally);
     files.push(summary.clone());
+    files.extend(sensor_tables);
     let figure = figure_of_histograms(&plan.title, &histograms);
     files.extend(write_figure(&FigureFolder::of(out), "histograms", &figure)?);
+    if let Some(figure) = figure_of_sensors(&plan.title, &run.sensors) {
+        files.extend(write_figure(&FigureFolder::of(out), "sensors", &figure)?);
+    }
     let lacks = last.closure() - run.first_closure;
     let energy_closure = lacks / last.lost().abs().max(f64::MIN_POSITIVE);
     let outcome = SceneOutcome {
@@ -190,6 +198,7 @@ fn write_results(
         written: run.table.written(),
         partners: PartnerOutcome::of(&plan.scene, tally),
         histograms,
+        sensors: run.sensors.outcomes(simulation),
         bruise: bruised.map(|(bruise, blows)| blows.outcome(bruise, &plan.scene)),
         energy: *last,
         energy_closure,
@@ -214,6 +223,7 @@ fn findings_of(
         &run.tally,
         run.simulation.waiting(),
     ));
+    findings.extend(run.sensors.findings(plan));
     if let Some(blows) = &run.blows {
         findings.extend(finding_of_blows(blows));
         findings.extend(blows.finding_of_range());

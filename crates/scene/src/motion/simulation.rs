@@ -97,8 +97,8 @@ pub struct FruitState {
 /// Skin of the list of neighbours over the mean radius; 1.
 const SKIN: f64 = 0.16;
 
-/// Steps between looks at sinks.
-const SINK_STEPS: u64 = 32;
+/// Steps between looks at sinks: fruit leave at the beginning of a step whose number is a multiple.
+pub const SINK_STEPS: u64 = 32;
 
 impl Simulation {
     /// A scene at its beginning.
@@ -195,27 +195,39 @@ impl Simulation {
 
     /// Every fruit in the scene, by number.
     pub fn fruit(&self) -> Vec<FruitState> {
-        let state = |body: usize| {
+        let mut all = Vec::with_capacity(self.count());
+        self.visit_fruit(|_| true, |own| all.push(own));
+        all.sort_by_key(|own| own.fruit);
+        all
+    }
+
+    /// Hands out fruit that are in the scene, in any order.
+    ///
+    /// * `wanted`: whether a fruit is, by its number
+    pub fn visit_fruit(&self, wanted: impl Fn(u32) -> bool, mut tell: impl FnMut(FruitState)) {
+        for body in 0..self.bodies.len() {
+            let fruit = self.bodies.fruit[body];
+            if self.bodies.clump[body] != NONE || !wanted(fruit) {
+                continue;
+            }
             let (HalfLine([x, y, z, _]), m) = (self.bodies.place[body], self.bodies.motion[body]);
-            FruitState {
-                fruit: self.bodies.fruit[body],
+            tell(FruitState {
+                fruit,
                 place: [x, y, z],
                 velocity: [m[0], m[1], m[2]],
                 spin: [m[4], m[5], m[6]],
                 turn: self.bodies.turn[body],
-            }
-        };
-        let spheres = (0..self.bodies.len()).filter(|body| self.bodies.clump[*body] == NONE);
-        let mut all: Vec<FruitState> = spheres.map(state).collect();
-        all.extend(self.clumps.iter().map(|own| FruitState {
-            fruit: own.fruit,
-            place: own.place,
-            velocity: own.velocity,
-            spin: own.spin,
-            turn: own.turn,
-        }));
-        all.sort_by_key(|own| own.fruit);
-        all
+            });
+        }
+        for own in self.clumps.iter().filter(|own| wanted(own.fruit)) {
+            tell(FruitState {
+                fruit: own.fruit,
+                place: own.place,
+                velocity: own.velocity,
+                spin: own.spin,
+                turn: own.turn,
+            });
+        }
     }
 
     /// Contacts that ended since the last call, in the order of steps.
