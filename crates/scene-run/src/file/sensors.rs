@@ -1,16 +1,15 @@
 //! `[[sensors]]` of scene.toml.
 
 use crate::file::key::{Section, short};
-use crate::file::walls::{PlaneFile, PlateFile, plane_of, plate_of};
+use crate::file::walls::{PlaneFile, PlateFile, normal_of, plate_of};
 use serde::Deserialize;
-use std::ops::Range;
 use toml::Spanned;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::file_quantity::QuantityText;
 use windfall_files::text::toml_source::{TomlSource, place_at, suggestion};
 use windfall_scene::scene::Fruit;
-use windfall_scene::shape::surface::{Plate, Shape};
+use windfall_scene::shape::surface::Plate;
 use windfall_scene::vector::Vector;
 
 /// `[[sensors]]`
@@ -204,20 +203,11 @@ fn sensor_of(
     let name = name.ok_or_else(|| table.lacks("name", "its name", "name = \"end of the belt\""))?;
     let (kind, sampled) = match (&file.plane, &file.plate, &file.space, &file.probe) {
         (Some(own), None, None, None) => {
-            let PlaneFile { point, normal } = *own.get_ref();
-            check_places(table, &own.span(), "plane", &[point, normal])?;
-            let kind = match plane_of(table, own, name)? {
-                Shape::Plane { point, normal } => SensorKind::Plane { point, normal },
-                _ => SensorKind::Plane { point, normal },
-            };
-            (kind, false)
+            let normal = normal_of(table, own, name)?;
+            let point = own.get_ref().point;
+            (SensorKind::Plane { point, normal }, false)
         }
-        (None, Some(own), None, None) => {
-            let PlateFile { corner, edges } = *own.get_ref();
-            check_places(table, &own.span(), "plate", &[corner, edges[0], edges[1]])?;
-            plate_of(table, own, name)?;
-            (SensorKind::Plate(Plate { corner, edges }), false)
-        }
+        (None, Some(own), None, None) => (SensorKind::Plate(plate_of(table, own, name)?), false),
         (None, None, Some(own), None) => (space_of(table, own)?, true),
         (None, None, None, Some(_)) => {
             let least = &file.least_acceleration;
@@ -280,25 +270,12 @@ fn interval_of(table: &Section, file: &SensorFile, sampled: bool, end: f64) -> R
 
 fn space_of(table: &Section, space: &Spanned<SpaceFile>) -> Result<SensorKind, Error> {
     let SpaceFile { low, high } = *space.get_ref();
-    check_places(table, &space.span(), "box", &[low, high])?;
     if (0..3).any(|axis| low[axis] >= high[axis]) {
         let problem = "`low` must be below `high` in x, y and z";
         let text = format!("{low:?}, {high:?}");
         return Err(table.refused(&space.span(), "box", text, problem));
     }
     Ok(SensorKind::Space { low, high })
-}
-
-fn check_places(
-    table: &Section,
-    at: &Range<usize>,
-    key: &str,
-    places: &[Vector],
-) -> Result<(), Error> {
-    match places.as_flattened().iter().all(|own| own.is_finite()) {
-        true => Ok(()),
-        false => Err(table.refused(at, key, "nan or inf", "its places must be numbers")),
-    }
 }
 
 /// The kinds of fruit of a name, by number.

@@ -135,7 +135,9 @@ pub fn wall_of(
     let material = table.material(&own.span(), "material", own.get_ref(), materials)?;
     let shapes = [
         file.plane.as_ref().map(|own| plane_of(&table, own, name)),
-        file.plate.as_ref().map(|own| plate_of(&table, own, name)),
+        file.plate
+            .as_ref()
+            .map(|own| Ok(Shape::Plates(vec![plate_of(&table, own, name)?]))),
         file.bin.as_ref().map(|own| box_of(&table, own)),
         file.cylinder
             .as_ref()
@@ -165,22 +167,26 @@ fn flat(table: &Section, shape: &Spanned<impl Sized>, key: &str, wall: &str) -> 
     table.refused(&shape.span(), key, wall, problem)
 }
 
-/// An endless plane.
-pub fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Shape, Error> {
-    let PlaneFile { point, normal } = *plane.get_ref();
-    let normal = unit(normal).ok_or_else(|| flat(table, plane, "plane normal", wall))?;
+fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Shape, Error> {
+    let normal = normal_of(table, plane, wall)?;
+    let PlaneFile { point, .. } = *plane.get_ref();
     Ok(Shape::Plane { point, normal })
+}
+
+/// The normal of a plane, of length 1.
+pub fn normal_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Vector, Error> {
+    unit(plane.get_ref().normal).ok_or_else(|| flat(table, plane, "plane normal", wall))
 }
 
 /// Sine of the angle of edges below which they are parallel; 1.
 const FLAT: f64 = 1e-9;
 
 /// A parallelogram.
-pub fn plate_of(table: &Section, plate: &Spanned<PlateFile>, wall: &str) -> Result<Shape, Error> {
+pub fn plate_of(table: &Section, plate: &Spanned<PlateFile>, wall: &str) -> Result<Plate, Error> {
     let PlateFile { corner, edges } = *plate.get_ref();
     let [a, b] = edges;
     match length(cross(a, b)) > FLAT * length(a) * length(b) {
-        true => Ok(Shape::Plates(vec![Plate { corner, edges }])),
+        true => Ok(Plate { corner, edges }),
         false => Err(flat(table, plate, "plate edges", wall)),
     }
 }

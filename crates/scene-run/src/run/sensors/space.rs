@@ -17,6 +17,8 @@ pub(super) struct Space {
     high: Vector,
     /// Steps between rows of the table.
     pub every: u64,
+    /// What is in it at the end.
+    pub last: Content,
     /// What was seen.
     pub state: SpaceState,
 }
@@ -79,6 +81,7 @@ impl Space {
             low,
             high,
             every,
+            last: Content::default(),
             state: SpaceState {
                 stays: vec![[f64::NAN; 2]; fruit],
                 inside: vec![false; fruit],
@@ -188,10 +191,8 @@ impl Space {
     }
 
     /// What it saw.
-    ///
-    /// * `now`: what is in it at the end
-    pub fn outcome(&self, now: &Content) -> SpaceOutcome {
-        let own = &self.state;
+    pub fn outcome(&self) -> SpaceOutcome {
+        let (own, now) = (&self.state, &self.last);
         let stays = own.stays.iter().zip(&own.inside);
         let over = stays.filter(|([first, _], inside)| !first.is_nan() && !**inside);
         let mut times: Vec<f64> = over.map(|([first, last], _)| last - first).collect();
@@ -271,7 +272,7 @@ mod tests {
         own.follow(&way(2, [0.5, 1.0, 0.2], [1.5, 1.0, 0.2], 2.0));
         own.follow(&way(2, [1.5, 1.0, 0.2], [0.9, 1.0, 0.2], 3.0));
         own.leave(2, 4.0);
-        let found = own.outcome(&Content::default());
+        let found = own.outcome();
         assert_eq!(found.entered, 2);
         let residence = found.residence.unwrap();
         assert_eq!(residence.fruit, 2);
@@ -290,7 +291,7 @@ mod tests {
             place,
             velocity: [0.0; 3],
             spin: [0.0; 3],
-            turn: Fruit::ORIENTATION,
+            turn: windfall_scene::vector::UNTURNED,
         };
         let states = [at(0, [0.5, 0.5, 0.3]), at(1, [0.5, 0.5, 0.6])];
         let found = own.content(&states, &all);

@@ -166,18 +166,24 @@ impl Sensors {
     pub fn take(&mut self, simulation: &Simulation) -> Result<(), Error> {
         let (now, time) = (simulation.steps(), simulation.time());
         let is_due = |every: u64| now.is_multiple_of(every);
-        let looks = self.looks() && (is_due(self.every) || now >= self.all);
+        let ends = now >= self.all;
+        let looks = self.looks() && (is_due(self.every) || ends);
         if looks || self.spaces.iter().any(|own| is_due(own.every)) {
             let fruit = simulation.fruit();
             if looks {
                 self.look(simulation, &fruit)?;
             }
-            for own in self.spaces.iter_mut().filter(|own| is_due(own.every)) {
+            let spaces = self.spaces.iter_mut();
+            for own in spaces.filter(|own| is_due(own.every) || ends) {
                 let sensor = &self.plan.all[own.sensor];
-                let counted = counted(&self.plan, sensor, &fruit);
-                let content = own.content(&counted, &simulation.scene.fruit);
-                own.sample(time, &content);
-                self.tables.content(own.sensor, time, &content)?;
+                let counts = |own: &&FruitState| self.plan.counts(sensor, own.fruit);
+                let counted: Vec<FruitState> = fruit.iter().filter(counts).copied().collect();
+                own.last = own.content(&counted, &simulation.scene.fruit);
+                if is_due(own.every) {
+                    let content = own.last;
+                    own.sample(time, &content);
+                    self.tables.content(own.sensor, time, &content)?;
+                }
             }
         }
         for own in self.probes.iter_mut().filter(|own| is_due(own.every)) {
@@ -303,7 +309,6 @@ impl Sensors {
 
     /// What each sensor saw.
     pub fn outcomes(&self, simulation: &Simulation) -> Vec<SensorOutcome> {
-        let fruit = simulation.fruit();
         let scene = &simulation.scene;
         let partner = |own: Option<Partner>| match own {
             Some(Partner::Fruit(other)) => (Some(FRUIT.to_owned()), Some(other + 1)),
@@ -321,10 +326,7 @@ impl Sensors {
                 look: look as f64 * self.step,
                 interval: every.map_or(plan.interval, |every| every as f64 * self.step),
                 flow: flow.map(Flow::outcome),
-                space: space.map(|own| {
-                    let counted = counted(&self.plan, plan, &fruit);
-                    own.outcome(&own.content(&counted, &scene.fruit))
-                }),
+                space: space.map(Space::outcome),
                 probe: probe.map(|own| own.outcome(partner)),
             }
         };
@@ -346,12 +348,6 @@ impl Sensors {
         let silent = silent.map(|(sensor, _)| silent_finding(&plan.sensors.all[sensor], plan));
         silent.collect()
     }
-}
-
-/// Fruit that count for a sensor.
-fn counted(plan: &SensorsPlan, sensor: &SensorPlan, fruit: &[FruitState]) -> Vec<FruitState> {
-    let counts = |own: &&FruitState| plan.counts(sensor, own.fruit);
-    fruit.iter().filter(counts).copied().collect()
 }
 
 /// What it means that a sensor saw nothing.
