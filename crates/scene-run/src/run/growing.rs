@@ -28,9 +28,10 @@ pub(crate) fn partial_of(path: &Path) -> PathBuf {
 /// steps had finished some already.
 ///
 /// # Errors
-/// It cannot be renamed.
+/// It is of somebody else, or cannot be renamed.
 pub(crate) fn take_back(path: &Path) -> Result<(), Error> {
     let partial = partial_of(path);
+    check_written(path, None)?;
     match !partial.exists() && path.is_file() {
         true => std::fs::rename(path, &partial).map_err(access(path, "write")),
         false => Ok(()),

@@ -81,7 +81,8 @@ pub struct SceneExportArguments {
 #[command(
     after_help = "Writes beside FILE, into FILE without its ending and with .run: events.csv (every contact: when, \
 where in space and on the fruit, impact speed, peak force, largest displacement, duration, absorbed energy), \
-fruit.csv (every fruit with its hardest contact) and scene.json (what is printed). Units are in the names of \
+fruit.csv (every fruit with its hardest contact), tables sensor_….csv of [[sensors]], and scene.json (what is \
+printed). Units are in the names of \
 the columns; SI.
 
 A run that was stopped, by Ctrl-C, a full disk or a cut of power, goes on from its last checkpoint with --resume, \

@@ -535,3 +535,54 @@ fn every_poured_fruit_comes_on_lammps_too() {
         count(&own)
     );
 }
+
+/// A plane and a box see the same fruit at the same times in frames of LAMMPS; a probe is refused.
+#[test]
+fn sensors_see_the_same_in_the_frames_of_another_engine() {
+    let folder = tempfile::tempdir().unwrap();
+    let sensors = "[[sensors]]\nname = \"level\"\nplane = { point = [0, 0, 0.12], normal = [0, 0, 1] }\n\
+                   [[sensors]]\nname = \"room\"\ninterval = \"10 ms\"\n\
+                   box = { low = [-1, -0.3, -0.5], high = [1.4, 0.3, 0.25] }\n";
+    std::fs::write(folder.path().join("s.toml"), format!("{IMPACTS}{sensors}")).unwrap();
+    let run = |engine: &str| {
+        let arguments = [
+            "scene", "run", "s.toml", "--engine", engine, "--out", engine, "--format", "json",
+        ];
+        let (done, json, problem) = windfall(&arguments, folder.path());
+        assert!(done, "{problem}");
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let path = folder.path().join(engine).join("sensor_passes.csv");
+        let text = std::fs::read_to_string(path).unwrap();
+        let mut passes: Vec<(String, String, f64)> = Vec::new();
+        for line in text.lines().skip(1) {
+            let cells: Vec<&str> = line.split(',').collect();
+            passes.push((
+                cells[2].to_owned(),
+                cells[3].to_owned(),
+                cells[1].parse().unwrap(),
+            ));
+        }
+        passes.sort_by(|a, b| a.0.cmp(&b.0).then(a.2.total_cmp(&b.2)));
+        (passes, json["sensors"].clone())
+    };
+    let ((own, here), (theirs, there)) = (run("windfall"), run("lammps"));
+    assert!(own.len() >= 4, "{own:?}");
+    assert_eq!(own.len(), theirs.len(), "{own:?} {theirs:?}");
+    for (a, b) in own.iter().zip(&theirs) {
+        assert_eq!((&a.0, &a.1), (&b.0, &b.1));
+        assert!((a.2 - b.2).abs() < 5e-4, "{a:?} {b:?}");
+    }
+    for key in ["entered", "inside"] {
+        assert_eq!(here[1]["space"][key], there[1]["space"][key], "{key}");
+    }
+    let probe = "[[sensors]]\nname = \"feeler\"\nprobe = \"apple\"\ninterval = \"1 ms\"\n";
+    std::fs::write(folder.path().join("p.toml"), format!("{IMPACTS}{probe}")).unwrap();
+    let (done, _, problem) = windfall(
+        &["scene", "run", "p.toml", "--engine", "lammps"],
+        folder.path(),
+    );
+    assert!(
+        !done && problem.contains("\"feeler\"") && problem.contains("--engine windfall"),
+        "{problem}"
+    );
+}
