@@ -12,9 +12,9 @@ pub(crate) fn figure_of_sensors(title: &str, sensors: &Sensors) -> Option<Figure
     let flows = sensors.flows.iter();
     let flows = flows.map(|own| flow_panel(own, sensors.name(own.sensor), sensors.end));
     let spaces = sensors.spaces.iter();
-    let spaces = spaces.flat_map(|own| space_panels(own, sensors.name(own.sensor)));
+    let spaces = spaces.flat_map(|own| space_panels(own, sensors.name(own.sensor), sensors.end));
     let probes = sensors.probes.iter();
-    let probes = probes.map(|own| probe_panel(own, sensors.name(own.sensor)));
+    let probes = probes.map(|own| probe_panel(own, sensors.name(own.sensor), sensors.end));
     let panels: Vec<Panel> = flows.chain(spaces).chain(probes).collect();
     (!panels.is_empty()).then(|| Figure::new(title, panels))
 }
@@ -37,37 +37,39 @@ fn flow_panel(own: &Flow, name: &str, end: f64) -> Panel {
     Panel::new(TIME, ("flow of fruit", "1/s"), series)
 }
 
-fn space_panels(own: &Space, name: &str) -> [Panel; 2] {
-    let line = |points| vec![Series::new(name, Style::Line, points).coloured(0)];
+/// What stretches an axis over the whole scene, so that panels stand below each other: places
+/// that show nothing.
+fn ends(at: f64, end: f64) -> [Series; 2] {
+    [0.0, end].map(|time| Series::new("", Style::Line, vec![(time, at)]))
+}
+
+fn space_panels(own: &Space, name: &str, end: f64) -> [Panel; 2] {
+    let panel = |what, points: Vec<(f64, f64)>| {
+        let first = points.first().map_or(0.0, |own| own.1);
+        let mut series = vec![Series::new(name, Style::Line, points).coloured(0)];
+        series.extend(ends(first, end));
+        Panel::new(TIME, what, series)
+    };
     [
-        Panel::new(
-            TIME,
-            ("fruit in the box", "1"),
-            line(own.state.counts.points()),
-        ),
-        Panel::new(TIME, ("highest top", "m"), line(own.state.levels.points())),
+        panel(("fruit in the box", "1"), own.state.counts.points()),
+        panel(("highest top", "m"), own.state.levels.points()),
     ]
 }
 
-fn probe_panel(own: &Probe, name: &str) -> Panel {
+fn probe_panel(own: &Probe, name: &str, end: f64) -> Panel {
     let marks = own.state.marks.points();
-    let from = own
-        .state
-        .magnitudes
-        .points()
-        .first()
-        .map_or(0.0, |own| own.0);
     let mut series = vec![
         Series::new(name, Style::Line, own.state.magnitudes.points()).coloured(0),
         Series::new(
             "threshold of an impact",
             Style::Level,
-            vec![(from, own.least)],
+            vec![(0.0, own.least)],
         )
         .coloured(1),
     ];
     if !marks.is_empty() {
         series.push(Series::new("impacts", Style::Spots, marks).coloured(1));
     }
+    series.extend(ends(0.0, end));
     Panel::new(TIME, ("acceleration", "m/s²"), series)
 }

@@ -7,6 +7,9 @@ use windfall_scene::binary;
 use windfall_scene::shape::surface::Plate;
 use windfall_scene::vector::{Vector, cross, dot, plus_scaled, subtract, unit};
 
+/// Bars of a figure at least.
+const LEAST_BARS: f64 = 20.0;
+
 /// A pass of a fruit's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pass {
@@ -107,7 +110,7 @@ impl Flow {
             }
             _ => return None,
         };
-        let trace = Trace::new(plan.interval, end);
+        let trace = Trace::new(plan.interval.min(end / LEAST_BARS), end);
         Some(Self {
             sensor,
             point,

@@ -56,7 +56,7 @@ pub struct SpaceOutcome {
     pub fruit_share: f64,
     /// Height z of the highest top of them; m.
     pub level: Option<f64>,
-    /// Most fruit in it at a row of the table.
+    /// Most fruit in it at a row of the table, or at the end.
     pub most: u64,
     /// Largest mass in it then; kg.
     pub largest_mass: f64,

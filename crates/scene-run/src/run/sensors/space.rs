@@ -210,9 +210,13 @@ impl Space {
             mass: now.mass,
             fruit_share: now.share,
             level: now.level,
-            most: own.most,
-            largest_mass: own.largest_mass,
-            largest_level: own.largest_level,
+            most: own.most.max(now.fruit),
+            largest_mass: own.largest_mass.max(now.mass),
+            largest_level: own
+                .largest_level
+                .into_iter()
+                .chain(now.level)
+                .reduce(f64::max),
             residence,
         }
     }

@@ -40,12 +40,12 @@ fn text_of_flows(rows: &[Row<FlowOutcome>]) -> String {
         ("passed", |own| own.0.to_owned()),
         ("forward", |own| own.1.forward.to_string()),
         ("backward", |own| own.1.backward.to_string()),
-        ("mass forward (kg)", |own| number(own.1.mass_forward)),
+        ("kg forward", |own| number(own.1.mass_forward)),
         ("first (s)", |own| given(own.1.first, number)),
         ("last (s)", |own| given(own.1.last, number)),
-        ("mean flow (1/s)", |own| given(own.1.mean_flow, number)),
+        ("flow (1/s)", |own| given(own.1.mean_flow, number)),
         ("(kg/s)", |own| given(own.1.mean_mass_flow, number)),
-        ("largest flow (1/s)", |own| number(own.1.largest_flow)),
+        ("largest (1/s)", |own| number(own.1.largest_flow)),
     ];
     text_of_rows(rows, &columns, &[0])
 }
@@ -62,10 +62,10 @@ fn text_of_spaces(rows: &[Row<SpaceOutcome>]) -> String {
             let residence = own.1.residence.as_ref();
             residence.map_or(0, |own| own.fruit).to_string()
         }),
-        ("median stay (s)", |own| {
+        ("stay (s)", |own| {
             given(own.1.residence.as_ref().map(|own| own.median), number)
         }),
-        ("longest (s)", |own| {
+        ("longest", |own| {
             given(own.1.residence.as_ref().map(|own| own.largest), number)
         }),
     ];
@@ -82,10 +82,8 @@ fn text_of_probes(rows: &[Row<ProbeOutcome>]) -> String {
         ("95 %", |own| {
             given(own.1.peak_acceleration.map(|own| own[1]), number)
         }),
-        ("largest of all", |own| {
-            given(own.1.largest_acceleration, number)
-        }),
-        ("velocity change (m/s)", |own| {
+        ("largest", |own| given(own.1.largest_acceleration, number)),
+        ("change (m/s)", |own| {
             given(own.1.velocity_change.map(|own| own[0]), number)
         }),
         ("95 %", |own| {

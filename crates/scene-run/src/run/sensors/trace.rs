@@ -60,7 +60,7 @@ impl Trace {
     ///
     /// * `until`: when the scene ended; the last bin is cut off there; s
     pub fn rates(&self, until: f64) -> Vec<(f64, f64)> {
-        let mut outline = Vec::new();
+        let mut outline = vec![(0.0, 0.0)];
         let bins = (until / self.width - 1e-9).ceil().max(1.0) as usize;
         for bin in 0..bins {
             let [from, to] = [bin, bin + 1].map(|edge| (edge as f64 * self.width).min(until));
@@ -68,6 +68,7 @@ impl Trace {
             let rate = value.map_or(0.0, |own| own / (to - from));
             outline.extend([(from, rate), (to, rate)]);
         }
+        outline.push((until, 0.0));
         outline
     }
 }
@@ -95,10 +96,8 @@ mod tests {
         assert_eq!(peak.len(), 1);
         assert!((peak[0].0 - 54.321).abs() <= 0.05 && peak[0].1 == 7.0);
         // A thousand a second, also in the last bin.
-        assert!(
-            sums.rates(100.0)
-                .iter()
-                .all(|own| (own.1 - 1000.0).abs() < 1e-6)
-        );
+        let rates = sums.rates(100.0);
+        let inner = &rates[1..rates.len() - 1];
+        assert!(inner.iter().all(|own| (own.1 - 1000.0).abs() < 1e-6));
     }
 }
