@@ -138,6 +138,10 @@ export interface FitOptionsView {
 export interface FittedFeature {
   drop: string; feature: string; measured: MeasuredValue; fitted: number; standardised: number;
 }
+export interface FlowOutcome {
+  forward: number; backward: number; mass_forward: number; first: number | null; last: number | null;
+  mean_flow: number | null; mean_mass_flow: number | null; largest_flow: number; largest_mass_flow: number;
+}
 export interface FramesAbout {
   title: string; end: number; interval: number; fruit: number; walls: WallAbout[]; bounds: Bounds;
 }
@@ -318,6 +322,14 @@ export interface Prediction {
   predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
 }
 export type PredictionOutcome = Prediction & ({ line: number; original: OriginalPrediction | null; });
+export interface ProbeImpactOutcome {
+  fruit: number; time: number; duration: number; peak_acceleration: number; velocity_change: number;
+  struck: string | null; struck_fruit: number | null; lasting: boolean;
+}
+export interface ProbeOutcome {
+  fruit: number; least_acceleration: number; largest_acceleration: number | null; impacts: number;
+  peak_acceleration: number[] | null; velocity_change: number[] | null; hardest: ProbeImpactOutcome | null;
+}
 export interface Problem { title: string; status: number; detail: string; code: string; }
 export interface ProfileOutcome { values: number[]; rises: number[]; open?: string | null; }
 export interface QualityOutcome {
@@ -348,6 +360,7 @@ export type RegressOutcome = RowCount & QualityOutcome & ({
   influence: RowOutcome[]; predictions: PredictionOutcome[]; means: MeansOutcome[]; findings: FindingOutcome[];
 });
 export interface ReportFiles { page: string; files: string[]; impacts: number; failed: number; }
+export interface ResidenceOutcome { fruit: number; mean: number; median: number; largest: number; }
 export interface ResidualOutcome {
   samples: number; weight: number; noise: number; persistence: number; rms: number; runs_z: number | null;
   by_phase: number[];
@@ -369,8 +382,8 @@ export interface SceneEntry {
 export interface SceneOutcome {
   title: string; end: number; engine: string; step: SceneStep; steps: number; fruit: number; waiting: number;
   left: number; contacts: number; written: number; partners: PartnerOutcome[]; histograms: HistogramOutcome[];
-  bruise: BruiseOutcome | null; energy: EnergyOutcome; energy_closure: number; findings: FindingOutcome[];
-  files: string[];
+  sensors: SensorOutcome[]; bruise: BruiseOutcome | null; energy: EnergyOutcome; energy_closure: number;
+  findings: FindingOutcome[]; files: string[];
 }
 export interface SceneStep {
   time_step: number; between: string[]; speed: number; contact_duration: number; peak_force_error: number;
@@ -380,11 +393,19 @@ export interface SceneView {
   id: string; about: FramesAbout; radii: number[]; vertices: number[][]; faces: number[][]; times: number[];
   counts: number[]; most: number; colours: string[]; outcome: SceneOutcome | null;
 }
+export interface SensorOutcome {
+  name: string; look: number; interval: number; flow: FlowOutcome | null; space: SpaceOutcome | null;
+  probe: ProbeOutcome | null;
+}
 export interface SettingOutcome {
   actual: number[]; coded: number[]; responses: PredictedResponse[]; desirability: number;
 }
 export interface ShownMotion { time: number[]; displacement: number[]; rate: number[]; force: number[]; }
 export interface ShownSamples { time: number[]; value: number[]; }
+export interface SpaceOutcome {
+  entered: number; inside: number; mass: number; fruit_share: number; level: number | null; most: number;
+  largest_mass: number; largest_level: number | null; residence: ResidenceOutcome | null;
+}
 export interface SpreadOutcome {
   mean: number; sd: number | null; n: number; cv: number | null; median: number; robust_sd: number | null;
   common_sd: number | null;
