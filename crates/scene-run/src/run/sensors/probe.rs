@@ -55,6 +55,8 @@ struct Own {
     fruit: u32,
     /// Velocity at the sample before, half a step before its end; m/s.
     velocity: Option<Vector>,
+    /// End of the last sample below the threshold; s.
+    quiet: f64,
     open: Option<Impact>,
     /// Partner and peak force of the hardest load that ended since the last quiet sample.
     hardest: Option<(Partner, f64)>,
@@ -63,6 +65,7 @@ struct Own {
 binary!(Own {
     fruit,
     velocity,
+    quiet,
     open,
     hardest
 });
@@ -162,7 +165,7 @@ impl Probe {
     pub fn load(&mut self, event: &Event) {
         for (fruit, partner) in sides(event) {
             if let Some(place) = self.place_of(fruit) {
-                self.state.own[place].struck_by(partner, event.peak_force);
+                self.state.own[place].struck_by(partner, event);
             }
         }
     }
@@ -188,14 +191,16 @@ impl Probe {
         })
     }
 
+    /// Whether a sample ends the impact of its fruit.
+    pub fn ends(&self, sample: &Sample) -> bool {
+        let own = self.place_of(sample.fruit).map(|own| &self.state.own[own]);
+        own.is_some_and(|own| own.open.is_some()) && length(sample.acceleration) < self.least
+    }
+
     /// Takes a sample into the impact of its fruit; the impact that it ended.
     ///
-    /// * `lasting`: loads that last now, asked for where an impact ends
-    pub fn feel(
-        &mut self,
-        sample: &Sample,
-        lasting: impl FnOnce() -> Vec<Event>,
-    ) -> Option<Impact> {
+    /// * `lasting`: loads that last now, where it ends one
+    pub fn feel(&mut self, sample: &Sample, lasting: &[Event]) -> Option<Impact> {
         let place = self.place_of(sample.fruit)?;
         let size = length(sample.acceleration);
         let (least, interval) = (self.least, self.interval);
@@ -215,20 +220,22 @@ impl Probe {
             impact.peak = impact.peak.max(size);
             return None;
         }
-        self.end_of(place, lasting)
+        let ended = self.end_of(place, lasting);
+        self.state.own[place].quiet = sample.time + 0.5 * interval;
+        ended
     }
 
     /// Ends the impact of a probe, if it has one.
-    fn end_of(&mut self, place: usize, lasting: impl FnOnce() -> Vec<Event>) -> Option<Impact> {
+    fn end_of(&mut self, place: usize, lasting: &[Event]) -> Option<Impact> {
         let own = &mut self.state.own[place];
         let Some(mut impact) = own.open.take() else {
             own.hardest = None;
             return None;
         };
-        for event in lasting() {
-            let mut sides = sides(&event).filter(|(fruit, _)| *fruit == impact.fruit);
+        for event in lasting {
+            let mut sides = sides(event).filter(|(fruit, _)| *fruit == impact.fruit);
             if let Some((_, partner)) = sides.next() {
-                own.struck_by(partner, event.peak_force);
+                own.struck_by(partner, event);
             }
         }
         impact.struck = own.hardest.take().map(|(partner, _)| partner);
@@ -251,10 +258,10 @@ impl Probe {
     pub fn leave(&mut self, fruit: u32) -> Option<Impact> {
         let place = self.place_of(fruit)?;
         self.state.own[place].velocity = None;
-        self.cut(place, Vec::new)
+        self.cut(place, &[])
     }
 
-    fn cut(&mut self, place: usize, lasting: impl FnOnce() -> Vec<Event>) -> Option<Impact> {
+    fn cut(&mut self, place: usize, lasting: &[Event]) -> Option<Impact> {
         if let Some(open) = &mut self.state.own[place].open {
             open.lasting = true;
         }
@@ -265,7 +272,7 @@ impl Probe {
     pub fn end(&mut self, lasting: &[Event]) -> Vec<Impact> {
         let probes = 0..self.state.own.len();
         probes
-            .filter_map(|place| self.cut(place, || lasting.to_vec()))
+            .filter_map(|place| self.cut(place, lasting))
             .collect()
     }
 
@@ -311,8 +318,12 @@ impl Probe {
 }
 
 impl Own {
-    fn struck_by(&mut self, partner: Partner, force: f64) {
-        if self.hardest.is_none_or(|(_, before)| before < force) {
+    /// Takes in a load, unless it was over when the last quiet sample was: loads are told later
+    /// than they end.
+    fn struck_by(&mut self, partner: Partner, event: &Event) {
+        let force = event.peak_force;
+        let late = event.time + event.duration >= self.quiet;
+        if late && self.hardest.is_none_or(|(_, before)| before < force) {
             self.hardest = Some((partner, force));
         }
     }

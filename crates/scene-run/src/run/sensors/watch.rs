@@ -186,6 +186,8 @@ impl Sensors {
                 }
             }
         }
+        // All contacts are gone through: once for all impacts that end now.
+        let mut lasting: Option<Vec<Event>> = None;
         for own in self.probes.iter_mut().filter(|own| is_due(own.every)) {
             let mut states = Vec::new();
             simulation.visit_fruit(|fruit| own.is_probe(fruit), |state| states.push(state));
@@ -195,7 +197,13 @@ impl Sensors {
                     continue;
                 };
                 self.tables.sample(own.sensor, &sample)?;
-                if let Some(impact) = own.feel(&sample, || simulation.lasting()) {
+                let lasting = match own.ends(&sample) {
+                    true => lasting
+                        .get_or_insert_with(|| simulation.lasting())
+                        .as_slice(),
+                    false => &[],
+                };
+                if let Some(impact) = own.feel(&sample, lasting) {
                     self.tables.impact(own.sensor, &impact)?;
                 }
             }
