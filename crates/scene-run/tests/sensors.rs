@@ -573,3 +573,32 @@ fn rejects_sensors_that_cannot_be_with_their_line() {
         "{problem}"
     );
 }
+
+#[test]
+fn closed_form_two_equal_balls_share_the_velocity_change() {
+    let other = drop("[-0.1, 0, 0]", "[2, 0, 0]").replace("\"ball\"", "\"other\"");
+    let sensors = "[[sensors]]\nname = \"ball\"\nprobe = \"ball\"\ninterval = \"20 us\"\n\
+                   least_acceleration = \"1 m/s^2\"\n";
+    let lab = Lab::new(
+        "gravity = \"0 m/s^2\"\nend = \"40 ms\"\ntime_step = \"10 us\"",
+        &(drop("[0, 0, 0]", "[0, 0, 0]") + &other + sensors),
+    );
+    lab.run();
+    let (events, impacts) = (lab.table("events.csv"), lab.table("sensor_impacts.csv"));
+    assert_eq!((events.len(), impacts.len()), (1, 1));
+    let mass = 746.0 * std::f64::consts::PI / 6.0 * 0.08_f64.powi(3);
+    // Half the mass moves: the energy kept is ¼ m v² (1 − e²).
+    let kept = number(&events[0], "absorbed_energy_J");
+    let restitution = (1.0 - kept / (0.25 * mass * 4.0)).sqrt();
+    let change = number(&impacts[0], "velocity_change_m_s");
+    let share = change / (1.0 + restitution);
+    assert!((share - 1.0).abs() < 5e-3, "{change} {restitution}");
+    let struck = (
+        impacts[0]["struck"].as_str(),
+        impacts[0]["struck_fruit"].as_str(),
+    );
+    assert_eq!(
+        (impacts[0]["fruit"].as_str(), struck),
+        ("1", ("fruit", "2"))
+    );
+}
