@@ -40,9 +40,20 @@ pub fn replace_files_of_others() {
 /// [`Error::NotWrittenHere`]; the file cannot be read.
 pub fn check_written(path: &Path, contents: Option<&[u8]>) -> Result<(), Error> {
     let replaced = std::fs::metadata(path).is_ok_and(|own| own.is_file() && own.len() > 0);
-    if !replaced || FORCE.load(Ordering::Relaxed) {
+    if !replaced || FORCE.load(Ordering::Relaxed) || is_written(path, contents)? {
         return Ok(());
     }
+    Err(Error::NotWrittenHere {
+        path: path.to_path_buf(),
+    })
+}
+
+/// Whether a file is one that windfall wrote and nobody has changed since, or has these contents;
+/// what `--force` allows makes no difference.
+///
+/// # Errors
+/// It, or the list of its folder, cannot be read.
+pub fn is_written(path: &Path, contents: Option<&[u8]>) -> Result<bool, Error> {
     check_plain(&list_of(path))?;
     let name = name_of(path);
     let listed = |digest: String| with_lines(path, |lines| lines.contains(&(digest, name.clone())));
@@ -50,12 +61,7 @@ pub fn check_written(path: &Path, contents: Option<&[u8]>) -> Result<(), Error> 
     // Another program would fill what the link leads to.
     let filled = || check_plain(path).is_ok() && listed(ANY.to_owned());
     let same = contents.is_some_and(|own| digest_bytes(own) == digest);
-    match same || listed(digest) || filled() {
-        true => Ok(()),
-        false => Err(Error::NotWrittenHere {
-            path: path.to_path_buf(),
-        }),
-    }
+    Ok(same || listed(digest) || filled())
 }
 
 /// Whether a file only serves the writing: a list, or one that has not got its name yet.

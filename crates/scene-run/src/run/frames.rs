@@ -1,14 +1,12 @@
 //! Frames of a scene, written while it runs.
 
 use crate::file::read::ScenePlan;
-use crate::file_error::access;
 use crate::geometry::geometry_of;
 use crate::run::frame_format::{
     FRAMES_FILE, Frame, FramesAbout, FruitFrame, MAGIC, VERSION, WallFrame, encode_frame,
 };
-use crate::run::growing::{GrowingFile, take_back};
+use crate::run::growing::{GrowingFile, remove_earlier, take_back};
 use crate::run::outcome::Tally;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::written::check_written;
@@ -115,10 +113,7 @@ impl SceneRecorder {
 pub fn remove_frames(out: &Path) -> Result<(), Error> {
     let path = out.join(FRAMES_FILE);
     check_written(&path, None)?;
-    match std::fs::remove_file(&path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(access(&path, "replace")(error)),
-        _ => Ok(()),
-    }
+    remove_earlier(&path)
 }
 
 impl FrameFile {

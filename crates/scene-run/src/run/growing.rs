@@ -7,7 +7,7 @@ use std::io::{BufWriter, ErrorKind, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::write_file::check_target;
-use windfall_files::written::{check_plain, check_written, list_written_as};
+use windfall_files::written::{check_plain, check_written, is_written, list_written_as};
 
 /// A growing file. Dropped before it is whole, it is removed unless a checkpoint needs it.
 pub(crate) struct GrowingFile {
@@ -43,7 +43,7 @@ pub(crate) fn take_back(path: &Path) -> Result<(), Error> {
 /// # Errors
 /// It cannot be removed.
 pub(crate) fn remove_earlier(path: &Path) -> Result<(), Error> {
-    if check_written(path, None).is_err() {
+    if !is_written(path, None).unwrap_or(false) {
         return Ok(());
     }
     match std::fs::remove_file(path) {

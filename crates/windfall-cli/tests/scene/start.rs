@@ -228,3 +228,25 @@ fn rejects_starts_that_do_not_fit_with_the_line() {
     run(directory, "scene").unwrap();
     assert!(!path.exists());
 }
+
+#[test]
+fn files_of_others_stay_where_this_scene_has_none_even_by_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = folder.path();
+    scene(
+        directory,
+        &[
+            ("count = 100", "count = 1"),
+            ("end = \"4 s\"", "end = \"0.02 s\""),
+            ("frames = \"20 ms\"", "# none"),
+        ],
+    );
+    run(directory, "scene").unwrap();
+    for name in ["sensor_passes.csv", "sensors.svg", "frames.bin"] {
+        let path = directory.join("s/scene.run").join(name);
+        std::fs::write(&path, "mine").unwrap();
+        let (done, _, problem) = windfall(&["scene", "run", "s/scene.toml", "--force"], directory);
+        assert!(done, "{problem}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine");
+    }
+}

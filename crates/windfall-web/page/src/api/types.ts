@@ -380,10 +380,10 @@ export interface SceneEntry {
   problem: string | null;
 }
 export interface SceneOutcome {
-  title: string; end: number; engine: string; step: SceneStep; steps: number; fruit: number; waiting: number;
-  left: number; contacts: number; written: number; partners: PartnerOutcome[]; histograms: HistogramOutcome[];
-  sensors: SensorOutcome[]; bruise: BruiseOutcome | null; energy: EnergyOutcome; energy_closure: number;
-  findings: FindingOutcome[]; files: string[];
+  title: string; start: number | null; end: number; engine: string; step: SceneStep; steps: number; fruit: number;
+  waiting: number; left: number; contacts: number; written: number; partners: PartnerOutcome[];
+  histograms: HistogramOutcome[]; sensors: SensorOutcome[]; bruise: BruiseOutcome | null; energy: EnergyOutcome;
+  energy_closure: number; findings: FindingOutcome[]; files: string[];
 }
 export interface SceneStep {
   time_step: number; between: string[]; speed: number; contact_duration: number; peak_force_error: number;
