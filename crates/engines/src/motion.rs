@@ -18,7 +18,8 @@ use windfall_scene::follow::Followed;
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file_error::access;
-use windfall_scene_run::run::advance::{Mover, stopped_scene as stopped};
+use windfall_scene_run::run::advance::Mover;
+use windfall_scene_run::stopped_scene as stopped;
 
 /// Frames of an engine, while it runs or from a file of an earlier run.
 pub struct Frames {

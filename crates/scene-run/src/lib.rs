@@ -8,3 +8,5 @@ mod geometry;
 pub mod run;
 mod run_error;
 pub mod study;
+
+pub use run_error::stopped_scene;

@@ -109,3 +109,8 @@ impl Fault for SceneRunError {
         )
     }
 }
+
+/// A scene whose result would mean nothing.
+pub fn stopped_scene(problem: windfall_scene::error::Error) -> windfall_files::error::Error {
+    SceneRunError::Failed(problem).into()
+}

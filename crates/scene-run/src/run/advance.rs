@@ -11,7 +11,7 @@ use crate::run::outcome::Tally;
 use crate::run::sensors::watch::Sensors;
 use crate::run::start::{begin_at, end_path};
 use crate::run::tables::{EventFile, is_written};
-use crate::run_error::SceneRunError;
+use crate::run_error::{SceneRunError, stopped_scene};
 use std::io::{Read, Result as IoResult};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
@@ -373,9 +373,4 @@ impl SceneRun {
         let _ = remove_checkpoint(&self.checkpoint);
         self.kept = None;
     }
-}
-
-/// A scene whose result would mean nothing.
-pub fn stopped_scene(problem: windfall_scene::error::Error) -> Error {
-    SceneRunError::Failed(problem).into()
 }

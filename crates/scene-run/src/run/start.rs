@@ -5,12 +5,12 @@
 //! them, and gravity, air, time step and all that is recorded may be others.
 
 use crate::file::read::{END_FILE, ScenePlan, StartPlan};
-use crate::run::advance::stopped_scene;
 use crate::run::checkpoint::{
     CheckpointHead, Parts, checkpoint_head, damaged, part, read_checkpoint, remove_checkpoint,
     write_checkpoint,
 };
 use crate::run::outcome::Tally;
+use crate::run_error::stopped_scene;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_scene::binary::Binary;
