@@ -58,12 +58,14 @@ impl Trace {
 
     /// Rates as an outline of bars; nothing seen is zero.
     ///
-    /// * `until`: when the scene ended; the last bin is cut off there; s
-    pub fn rates(&self, until: f64) -> Vec<(f64, f64)> {
-        let mut outline = vec![(0.0, 0.0)];
+    /// * `since`, `until`: when the scene began and ended; bins are cut off there; s
+    pub fn rates(&self, [since, until]: [f64; 2]) -> Vec<(f64, f64)> {
+        let mut outline = vec![(since, 0.0)];
         let bins = (until / self.width - 1e-9).ceil().max(1.0) as usize;
-        for bin in 0..bins {
-            let [from, to] = [bin, bin + 1].map(|edge| (edge as f64 * self.width).min(until));
+        let first = (since / self.width + 1e-9).max(0.0) as usize;
+        for bin in first..bins {
+            let edges = [bin, bin + 1].map(|edge| edge as f64 * self.width);
+            let [from, to] = edges.map(|edge| edge.clamp(since, until));
             let value = self.values.get(bin).filter(|own| !own.is_nan());
             let rate = value.map_or(0.0, |own| own / (to - from));
             outline.extend([(from, rate), (to, rate)]);
@@ -96,7 +98,7 @@ mod tests {
         assert_eq!(peak.len(), 1);
         assert!((peak[0].0 - 54.321).abs() <= 0.05 && peak[0].1 == 7.0);
         // A thousand a second, also in the last bin.
-        let rates = sums.rates(100.0);
+        let rates = sums.rates([0.0, 100.0]);
         let inner = &rates[1..rates.len() - 1];
         assert!(inner.iter().all(|own| (own.1 - 1000.0).abs() < 1e-6));
     }

@@ -33,8 +33,8 @@ pub struct Sensors {
     /// Steps between looks at planes and boxes.
     every: u64,
     step: f64,
-    /// When the scene ends; s, and steps.
-    pub(super) end: f64,
+    /// When the scene begins and ends; s, and steps at its end.
+    pub(super) span: [f64; 2],
     all: u64,
     tables: SensorTables,
 }
@@ -64,6 +64,7 @@ impl Sensors {
         let step = scene.time_step;
         sensors.check_step(step)?;
         let all = (plan.end / step).ceil() as u64;
+        let begun = plan.start.as_ref().map_or(0.0, |own| own.time);
         let numbered = || sensors.all.iter().enumerate();
         let timed = |own: &SensorPlan| {
             let every = (own.interval / step).round().max(1.0) as u64;
@@ -100,10 +101,10 @@ impl Sensors {
             spaces,
             probes,
             places,
-            looked: 0.0,
+            looked: begun,
             every: look_steps(step),
             step,
-            end: plan.end,
+            span: [begun, plan.end],
             all,
             tables,
             plan: sensors,
