@@ -28,12 +28,6 @@ pub(crate) struct Ball {
     along: f64,
 }
 
-/// How far the surface of a fruit lies outside of its bodies at most; m.
-pub(crate) fn lacks_of(now: &Moment, fruit: u32) -> f64 {
-    let clump = now.fruit[fruit as usize].clump.as_ref();
-    clump.map_or(0.0, |own| own.lacks())
-}
-
 impl Ball {
     /// The sphere of a body.
     pub(crate) fn of(body: usize, bodies: &Bodies) -> Self {

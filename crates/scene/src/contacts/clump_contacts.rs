@@ -5,7 +5,7 @@
 //! the contact, and hands it on when another one does. In a spheroid that is any sphere that fits
 //! into it, found along its axis from the deepest of those that are bodies.
 
-use crate::contacts::ball::{Ball, lacks_of};
+use crate::contacts::ball::Ball;
 use crate::contacts::contact::{Moment, Outcome, Over, Parcel, encounter, parted, too_deep, turn};
 use crate::contacts::neighbours::Bodies;
 use crate::contacts::pair_contacts::LARGEST_OVERLAP;
@@ -75,6 +75,8 @@ pub(crate) struct Around<'a, S> {
     /// The interaction of two materials; of a material and a wall.
     pub surface: S,
     pub wall_materials: &'a [u32],
+    /// How far the surfaces of two fruit lie outside of their bodies at most, together; m.
+    pub lacks: f64,
 }
 
 impl ClumpContacts {
@@ -231,8 +233,7 @@ impl FruitPair {
             return Ok(());
         };
         let fruit = [i, j].map(|body| bodies.fruit[body as usize]);
-        let lacks = fruit.map(|own| lacks_of(now, own)).iter().sum::<f64>();
-        if depth <= -lacks && self.contact.is_none() {
+        if depth <= -around.lacks && self.contact.is_none() {
             return Ok(());
         }
         let [[a, b], [c, d]] = Ball::closest([i as usize, j as usize], bodies, now);
@@ -313,11 +314,13 @@ struct Hit {
 
 impl NearWalls {
     /// Where the clump touches: the deepest of hits on one side of a wall.
-    fn hits(&self, bodies: &Bodies, walls: &WallState, now: &Moment) -> Vec<Hit> {
+    ///
+    /// * `lacks`: how far its surface lies outside of its bodies at most; m
+    fn hits(&self, bodies: &Bodies, walls: &WallState, now: &Moment, lacks: f64) -> Vec<Hit> {
         let (mut all, mut found) = (Vec::new(), Vec::new());
         for (place, (body, parts)) in self.near.iter().enumerate() {
             let ball = Ball::of(*body as usize, bodies);
-            let reach = ball.radius + lacks_of(now, bodies.fruit[ball.body]);
+            let reach = ball.radius + lacks;
             find_hits(walls, parts, ball.centre, reach, &mut found);
             let hits = found.iter().map(|&(facet, closest)| {
                 let wall = walls.facets[facet as usize].0;
@@ -356,7 +359,7 @@ impl NearWalls {
         let (bodies, now) = (around.bodies, around.now);
         let mut before = std::mem::take(&mut self.contacts);
         let mut work = 0.0;
-        for hit in self.hits(bodies, around.walls, now) {
+        for hit in self.hits(bodies, around.walls, now, 0.5 * around.lacks) {
             let goes_on = |own: &TouchingWall| hit.is_beside(own.wall, own.normal);
             let ball = &hit.ball;
             let material = around.wall_materials[hit.wall as usize];

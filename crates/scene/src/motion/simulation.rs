@@ -378,6 +378,7 @@ impl Simulation {
             now: &now,
             surface: |a: u32, b: u32| &surfaces[numbers[a as usize * materials + b as usize]],
             wall_materials: &wall_materials,
+            lacks: self.lacks,
         };
         let contacts = &mut self.clump_contacts;
         let work = contacts.advance(&around, &mut self.clump_loads, &mut outcome);
