@@ -59,7 +59,7 @@ pub struct PathFile {
 const RAMP: f64 = 0.1;
 /// Part of its time that such a ramp takes at most; 1.
 const RAMP_SHARE: f64 = 0.25;
-/// Faster walls between two rows of a table are a jump; m/s and rad/s.
+/// Faster walls, between two rows of a table or by a shift or an angle, jump; m/s and rad/s.
 const LARGEST_SPEED: f64 = 100.0;
 
 /// Adds the moves of the file to the walls that they name.
@@ -86,7 +86,7 @@ pub fn add_moves(
         for number in numbers {
             let wall = &mut walls[number];
             wall.motion.moves.push(found.clone());
-            if let Some((_, problem)) = wall.motion.problem() {
+            if let Some(problem) = wall.motion.problem() {
                 let name = wall.name.clone();
                 return Err(table.refused(&own.span(), "walls", name, problem));
             }
@@ -154,18 +154,46 @@ fn move_of(table: &Section, file: &MoveFile, end: f64) -> Result<Move, Error> {
                 return Err(table.refused(&value.span(), key, value.get_ref(), problem));
             }
         }
-        return path_of(table, path);
+        let found = path_of(table, path)?;
+        return match found.when.from < end {
+            true => Ok(found),
+            false => Err(never_begins(table, "path file", &path.get_ref().file, end)),
+        };
     }
     let when = when_of(table, file, end)?;
     let how = how_of(table, file, &when)?;
     Ok(Move { when, how })
 }
 
+/// The error of a move that begins after the end of the scene.
+fn never_begins(table: &Section, key: &str, at: &Spanned<impl ToString>, end: f64) -> Error {
+    let problem = format!("the scene ends at {} s: it would never begin", short(end));
+    table.refused(&at.span(), key, at.get_ref().to_string(), problem)
+}
+
+/// Refuses walls that would have to jump.
+///
+/// * `speed`: m/s or rad/s
+fn check_speed(
+    table: &Section,
+    at: &std::ops::Range<usize>,
+    key: &str,
+    speed: f64,
+) -> Result<(), Error> {
+    if speed <= LARGEST_SPEED {
+        return Ok(());
+    }
+    let problem = format!(
+        "the wall would have to move at {} m/s or rad/s to get there by `until`: give it more time",
+        short(speed)
+    );
+    Err(table.refused(at, key, table.written(at), problem))
+}
+
 fn when_of(table: &Section, file: &MoveFile, end: f64) -> Result<When, Error> {
     let from = table.at_least_zero(&file.from, "from", "s")?.unwrap_or(0.0);
     if let Some(own) = file.from.as_ref().filter(|_| from >= end) {
-        let problem = format!("the scene ends at {} s: it would never begin", short(end));
-        return Err(table.refused(&own.span(), "from", own.get_ref(), problem));
+        return Err(never_begins(table, "from", own, end));
     }
     let until = table.optional(&file.until, "until", "s")?;
     if let (Some(own), Some(until)) = (&file.until, until)
@@ -202,7 +230,9 @@ fn how_of(table: &Section, file: &MoveFile, when: &When) -> Result<How, Error> {
     };
     if let Some(own) = &file.shift {
         needs_end(&own.span(), "shift")?;
-        return Ok(How::Velocity(scaled(*own.get_ref(), 1.0 / when.whole())));
+        let velocity = scaled(*own.get_ref(), 1.0 / when.whole());
+        check_speed(table, &own.span(), "shift", length(velocity))?;
+        return Ok(How::Velocity(velocity));
     }
     if let Some(own) = &file.velocity {
         return Ok(How::Velocity(*own.get_ref()));
@@ -222,7 +252,9 @@ fn how_of(table: &Section, file: &MoveFile, when: &When) -> Result<How, Error> {
         (Some(own), None) => table.given(own, "rotation angular_velocity", "rad/s")?,
         (None, Some(own)) => {
             needs_end(&own.span(), "rotation angle")?;
-            table.given(own, "rotation angle", "rad")? / when.whole()
+            let speed = table.given(own, "rotation angle", "rad")? / when.whole();
+            check_speed(table, &own.span(), "rotation angle", speed.abs())?;
+            speed
         }
         _ => {
             let problem = "give either angle = \"90 deg\" or angular_velocity = \"1 rad/s\"";

@@ -209,8 +209,8 @@ impl Motion {
         self.moves.iter().all(|own| own.when == When::ALWAYS)
     }
 
-    /// What is wrong with its moves: the number of one, and why it cannot be.
-    pub fn problem(&self) -> Option<(usize, String)> {
+    /// Why its moves cannot be together, if they cannot.
+    pub fn problem(&self) -> Option<String> {
         let mut axis: Option<Axis> = None;
         for (number, own) in self.moves.iter().enumerate() {
             let before = &self.moves[..number];
@@ -219,7 +219,7 @@ impl Motion {
             {
                 let problem = "a wall turns about one axis: give all its moves the same `point` and \
                                `axis`";
-                return Some((number, problem.to_owned()));
+                return Some(problem.to_owned());
             }
             let same = |other: &&Move| {
                 std::mem::discriminant(&own.how) == std::mem::discriminant(&other.how)
@@ -238,12 +238,9 @@ impl Motion {
                     true => format!("begins at {from} s"),
                     false => "has no beginning".to_owned(),
                 };
-                return Some((
-                    number,
-                    format!(
-                        "it overlaps another move of the same kind, which {from} {until}: end that \
-                         one before, or begin this one after it"
-                    ),
+                return Some(format!(
+                    "it overlaps another move of the same kind, which {from} {until}: end that one \
+                     before, or begin this one after it"
                 ));
             }
         }
@@ -468,12 +465,9 @@ mod tests {
         };
         assert_eq!(of(&[(0.0, lift.clone()), (2.0, lift.clone())]), None);
         assert_eq!(of(&[(0.0, lift.clone()), (1.0, turn([0.0; 3]))]), None);
-        let (number, problem) = of(&[(0.0, lift.clone()), (1.9, lift)]).unwrap();
-        assert!(
-            number == 1 && problem.contains("begins at 0 s until 2 s"),
-            "{problem}"
-        );
+        let problem = of(&[(0.0, lift.clone()), (1.9, lift)]).unwrap();
+        assert!(problem.contains("begins at 0 s until 2 s"), "{problem}");
         let turns = [(0.0, turn([0.0; 3])), (5.0, turn([1.0, 0.0, 0.0]))];
-        assert!(of(&turns).unwrap().1.contains("one axis"));
+        assert!(of(&turns).unwrap().contains("one axis"));
     }
 }

@@ -164,6 +164,7 @@ fn rejects_moves_that_cannot_be_with_their_line() {
             "give `until` as well",
         ),
         (lift.replace("0.3 s", "0.1 s"), 4, "must be after 0.1 s"),
+        (lift.replace("0.3 s", "0.1000001 s"), 2, "give it more time"),
         (
             lift.replace("0.1 s", "0.9 s").replace("0.3 s", "2 s"),
             3,
@@ -231,6 +232,7 @@ fn rejects_tables_of_positions_that_jump_or_cannot_be_read() {
             "line 4: its time is not after",
         ),
         ("time_s,z_m\n0,0\n0.2,\n", moves, "line 3: a cell is blank"),
+        ("time_s,z_m\n5,0\n6,1\n", moves, "it would never begin"),
         ("time_s,z_m\n0,0\n", moves, "at least two rows"),
         ("t,z_m\n0,0\n1,1\n", moves, "needs the column time_s"),
         ("time_s,w_m\n0,0\n1,1\n", moves, "x_m, y_m, z_m"),
