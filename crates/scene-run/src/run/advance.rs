@@ -3,8 +3,8 @@
 use crate::bruise::scene::Blows;
 use crate::file::read::ScenePlan;
 use crate::run::checkpoint::{
-    CheckpointHead, Parts, changed_parts, check_checkpoint, checkpoint_head, checkpoint_path,
-    damaged, parts_of, read_checkpoint, remove_checkpoint, write_checkpoint,
+    CheckpointHead, Parts, changed_parts, checkpoint_head, checkpoint_path, damaged, parts_of,
+    read_checkpoint, remove_checkpoint, write_checkpoint,
 };
 use crate::run::frames::SceneRecorder;
 use crate::run::outcome::Tally;
@@ -16,6 +16,7 @@ use std::io::{Read, Result as IoResult};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
+use windfall_files::write_file::check_target;
 use windfall_scene::binary::Binary;
 use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
@@ -149,7 +150,7 @@ impl SceneRun {
             }
         };
         remove_checkpoint(&checkpoint)?;
-        check_checkpoint(&end_path(directory))?;
+        check_target(&end_path(directory))?;
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
         let sensors = Sensors::open(plan, directory, None)?;

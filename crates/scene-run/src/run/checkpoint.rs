@@ -190,7 +190,8 @@ pub fn check_checkpoint(path: &Path) -> Result<(), Error> {
     }
 }
 
-fn write_to(
+/// Writes what a checkpoint holds: its beginning, the body and their digest.
+pub(crate) fn write_to(
     file: &mut File,
     head: &CheckpointHead,
     body: impl Fn(&mut dyn Write) -> IoResult<()>,

@@ -25,7 +25,6 @@ pub struct SceneOutcome {
     /// Title.
     pub title: String,
     /// When it began, where it began at the end of another run; s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<f64>,
     /// When it ended; s.
     pub end: f64,

@@ -5,14 +5,16 @@
 //! them, and gravity, air, time step and all that is recorded may be others.
 
 use crate::file::read::{END_FILE, ScenePlan, StartPlan};
+use crate::file_error::access;
 use crate::run::checkpoint::{
-    CheckpointHead, Parts, checkpoint_head, damaged, part, read_checkpoint, remove_checkpoint,
-    write_checkpoint,
+    CheckpointHead, Parts, checkpoint_head, damaged, part, read_checkpoint, write_to,
 };
+use crate::run::growing::remove_earlier;
 use crate::run::outcome::Tally;
 use crate::run_error::stopped_scene;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
+use windfall_files::write_file::write_streamed;
 use windfall_scene::binary::Binary;
 use windfall_scene::motion::simulation::{Leaving, Simulation};
 use windfall_scene::scene::Scene;
@@ -88,10 +90,13 @@ pub fn save_end(
     let places = places(&plan.scene, time);
     let left: Vec<Option<Leaving>> = tally.fruit.iter().map(|own| own.left).collect();
     let state = simulation.checkpoint();
-    write_checkpoint(&path, &head, |to| {
-        places.write(to)?;
-        left.write(to)?;
-        state.write(to)
+    write_streamed(&path, |file| {
+        let written = write_to(file, &head, |to| {
+            places.write(to)?;
+            left.write(to)?;
+            state.write(to)
+        });
+        written.map_err(access(&path, "write"))
     })?;
     Ok(path)
 }
@@ -99,9 +104,9 @@ pub fn save_end(
 /// Removes the state of an earlier run.
 ///
 /// # Errors
-/// It is none, or cannot be removed.
+/// It cannot be removed.
 pub fn remove_end(directory: &Path) -> Result<(), Error> {
-    remove_checkpoint(&end_path(directory))
+    remove_earlier(&end_path(directory))
 }
 
 /// Reads when a scene begins, and makes its time step one of which a whole number came before.

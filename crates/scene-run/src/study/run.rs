@@ -5,7 +5,6 @@ use crate::file_error::{access, make_directory, write_json};
 use crate::frames::view::{PictureRequest, draw_scene, open_frames};
 use crate::run::advance::SceneStart;
 use crate::run::checkpoint::{check_checkpoint, checkpoint_path};
-use crate::run::start::end_path;
 use crate::run::workflow::run_plan;
 use crate::study::laws::{certain_laws, draw_laws};
 use crate::study::outcome::{Replicate, StudyOutcome, effects, variant};
@@ -189,9 +188,7 @@ fn check_folder(folder: &Path) -> Result<(), Error> {
         match path.symlink_metadata().is_ok_and(|own| own.is_dir()) {
             true => check_folder(&path)?,
             false if unfinished || is_own_file(&path) => {}
-            false if path == checkpoint_path(folder) || path == end_path(folder) => {
-                check_checkpoint(&path)?;
-            }
+            false if path == checkpoint_path(folder) => check_checkpoint(&path)?,
             false => check_written(&path, None)?,
         }
     }
