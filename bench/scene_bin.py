@@ -51,6 +51,12 @@ def coefficients(radius, effective_mass):
     return f"{kn} {ratio * kn} {gamma} {gamma} {FRICTION} 1 limit_damping"
 
 
+def granular(radius, effective_mass):
+    """The same in the words of pair_style granular."""
+    kn, kt, gamma, _, friction, *_ = coefficients(radius, effective_mass).split()
+    return f"hertz {kn} {gamma} tangential mindlin {kt} 1 {friction} damping viscoelastic limit_damping"
+
+
 wall = f"wall/gran hertz/history {coefficients(RADIUS, mass)}"
 with open(f"{folder}/bin.deck", "w") as out:
     out.write(f"""units si
@@ -60,8 +66,10 @@ boundary f f f
 newton off
 comm_modify vel yes
 read_data {folder}/bin.lmp
-pair_style gran/hertz/history {coefficients(RADIUS / 2, mass / 2)}
-pair_coeff * *
+variable granular index 0
+if "${{granular}} == 0" then &
+    "pair_style gran/hertz/history {coefficients(RADIUS / 2, mass / 2)}" "pair_coeff * *" &
+else "pair_style granular" "pair_coeff * * {granular(RADIUS / 2, mass / 2)}"
 fix wx all {wall} xplane 0 {width}
 fix wy all {wall} yplane 0 {width}
 fix wz all {wall} zplane 0 NULL
@@ -72,8 +80,8 @@ neigh_modify delay 0 every 20 check yes
 timestep {STEP}
 compute c all contact/atom
 compute cs all reduce ave c_c
-thermo_style custom step atoms ke c_cs cpu
-thermo_modify lost error
+thermo_style custom step atoms ke c_cs
+thermo_modify lost error flush yes
 thermo $(v_steps/10)
 run ${{steps}}
 print "FINAL mean height $(xcm(all,z))"
