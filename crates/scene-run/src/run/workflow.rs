@@ -25,8 +25,9 @@ use windfall_files::write_file::{check_target, write_whole};
 use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::energy::Energy;
 use windfall_scene::interaction::Interaction;
-use windfall_scene::motion::time_step::{Impact, SHORTER, SHORTEST, StepError};
+use windfall_scene::motion::time_step::{Impact, SHORTER, SHORTEST, Shaking, StepError};
 use windfall_scene::scene::Scene;
+use windfall_scene::shape::motion::How;
 use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{add, dot, length, turned};
 
@@ -353,12 +354,35 @@ fn hardest<'a>(
         radius: share * fruit.radius,
         mass: share * fruit.least_felt_mass(),
         speed: fastest(scene),
+        shaking: hardest_shaking(scene, [a, b]),
     };
     // A wall may be faster somewhere than where fruit meet it.
     while impact.speed > LEAST_SPEED && !impact.is_shallow() {
         impact.speed = (0.5 * impact.speed).max(LEAST_SPEED);
     }
     Some(impact)
+}
+
+/// Of the walls of either material the vibration that accelerates most, as if along the normal.
+fn hardest_shaking(scene: &Scene, materials: [usize; 2]) -> Option<Shaking> {
+    let walls = scene.walls.iter();
+    let moves = walls
+        .filter(|own| materials.contains(&own.material))
+        .flat_map(|own| &own.motion.moves);
+    let shaking = moves.filter_map(|own| match &own.how {
+        How::Vibration {
+            amplitude,
+            frequency,
+        } => Some(Shaking {
+            amplitude: length(*amplitude),
+            frequency: frequency.abs(),
+        }),
+        _ => None,
+    });
+    let shakes = |own: &Shaking| own.acceleration() > 0.0;
+    shaking
+        .filter(shakes)
+        .max_by(|x, y| x.acceleration().total_cmp(&y.acceleration()))
 }
 
 /// Slowest impact that a time step is chosen for; m/s.

@@ -72,7 +72,7 @@ fn two_runs_in_a_row_are_one() {
     assert_eq!(on["left"], whole["left"]);
     assert!(on["left"].as_u64().unwrap() > 0);
     assert!((on["start"].as_f64().unwrap() - 0.8).abs() < 2e-4);
-    assert!(whole.get("start").is_none());
+    assert!(whole["start"].is_null());
     let steps = |of: &serde_json::Value| of["steps"].as_u64().unwrap();
     let first = run(directory, "scene").unwrap();
     assert!(steps(&first) + steps(&on) <= steps(&whole));
