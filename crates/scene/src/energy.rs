@@ -37,6 +37,9 @@ pub struct Energy {
     pub brought: f64,
 }
 
+/// Of all energies: what rounding may come to; 1.
+const ROUNDING: f64 = 1e-9;
+
 impl Energy {
     /// What the account lacks: zero but for the errors of the time step; J.
     pub fn closure(&self) -> f64 {
@@ -50,6 +53,21 @@ impl Energy {
             + self.lost_by_drag
             - self.done_by_walls
             - self.brought
+    }
+
+    /// What the account lacks over what was lost, or over a billionth of all energies where even
+    /// less was lost, so that rounding does not count; 1.
+    ///
+    /// * `first`: what it lacked at the beginning; J
+    pub fn relative_closure(&self, first: f64) -> f64 {
+        let held = self.kinetic + self.rotational + self.potential.abs();
+        let size = held + self.done_by_walls.abs() + self.brought.abs();
+        (self.closure() - first)
+            / self
+                .lost()
+                .abs()
+                .max(ROUNDING * size)
+                .max(f64::MIN_POSITIVE)
     }
 
     /// What was lost or is held in contacts, by all mechanisms; J.

@@ -261,13 +261,24 @@ const PARTNERS_CSV: [Column<PartnerOutcome>; 15] = [
     }),
 ];
 
+/// How well the energy account closes.
+fn text_of_account(outcome: &SceneOutcome) -> String {
+    match outcome.energy.lost() > 0.0 {
+        true => format!(
+            "The energy account closes to {} % of what was lost.",
+            number(100.0 * outcome.energy_closure.abs())
+        ),
+        false => "No energy was lost.".to_owned(),
+    }
+}
+
 /// Results of a scene, for a terminal.
 pub fn text_of_scene(outcome: &SceneOutcome) -> String {
     let step = &outcome.step;
     let mut text = format!(
         "{}\n\n{} fruit {} {} s in {} steps of {} µs: peak forces of {} and {} at {} m/s err by \
          {} %, absorbed energies by {} % of the impact energy.\n{} contacts, {} of them written; \
-         {} fruit left. The energy account closes to {} % of what was lost.\n\n",
+         {} fruit left. {}\n\n",
         outcome.title,
         outcome.fruit,
         outcome.start.map_or("over".to_owned(), |own| format!(
@@ -285,7 +296,7 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         outcome.contacts,
         outcome.written,
         outcome.left,
-        number(100.0 * outcome.energy_closure.abs()),
+        text_of_account(outcome),
     );
     if outcome.engine != Engine::Windfall.title() {
         text += &format!("Moved by {}.\n\n", outcome.engine);

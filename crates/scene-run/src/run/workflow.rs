@@ -184,8 +184,7 @@ fn write_results(
     if let Some(figure) = figure_of_sensors(&plan.title, &run.sensors) {
         files.extend(write_figure(&FigureFolder::of(out), "sensors", &figure)?);
     }
-    let lacks = last.closure() - run.first_closure;
-    let energy_closure = lacks / last.lost().abs().max(f64::MIN_POSITIVE);
+    let energy_closure = last.relative_closure(run.first_closure);
     let outcome = SceneOutcome {
         title: plan.title.clone(),
         start: plan.start.as_ref().map(|own| own.time),
@@ -230,14 +229,32 @@ fn findings_of(
         findings.extend(finding_of_blows(blows));
         findings.extend(blows.finding_of_range());
     }
-    if closure.abs() > moved.large_closure.unwrap_or(f64::INFINITY) {
-        findings.push(account(closure));
+    match moved.large_closure {
+        Some(large) if closure.abs() > large => findings.push(engine_account(closure)),
+        None if closure.abs() > LARGE_CLOSURE => findings.push(own_account(closure)),
+        _ => {}
     }
     findings
 }
 
+/// Lack of the account of a scene on windfall's own engine that is worth a word; 1.
+const LARGE_CLOSURE: f64 = 0.01;
+
+/// What a large lack of the account of windfall's own engine means.
+fn own_account(closure: f64) -> FindingOutcome {
+    FindingOutcome::new(
+        "energy-account",
+        format!(
+            "the energy account lacks {:.1} % of what was lost: the time step is too long for this \
+             scene; leave time_step out, ask for a smaller time_step_error, or give a shorter \
+             time_step",
+            100.0 * closure.abs()
+        ),
+    )
+}
+
 /// What a large lack of the account of another engine means.
-fn account(closure: f64) -> FindingOutcome {
+fn engine_account(closure: f64) -> FindingOutcome {
     FindingOutcome::new(
         "engine-account",
         format!(
