@@ -109,13 +109,16 @@ impl Fruit {
         axes.map_or(self.radius, |[a, b, c]| (a * b * c).cbrt())
     }
 
-    /// The least mass that a contact of the fruit feels: of a clump that is struck at its end
-    /// it turns away; kg.
+    /// The least mass that a contact of the fruit feels along its normal: from a spheroid that is
+    /// struck beside its centre it turns away; kg.
     pub fn least_felt_mass(&self) -> f64 {
         self.clump.as_ref().map_or(self.mass, |own| {
-            // An end lies off the axes of the largest moment.
+            // No normal of an ellipse passes its centre farther off than a − b.
+            let axes = own.semi_axes(self.mass);
+            let least = axes.into_iter().fold(f64::INFINITY, f64::min);
+            let arm = axes.into_iter().fold(0.0, f64::max) - least;
             let moment = own.moments.iter().copied().fold(0.0, f64::max);
-            1.0 / (1.0 / self.mass + self.radius * self.radius / moment)
+            1.0 / (1.0 / self.mass + arm * arm / moment)
         })
     }
 

@@ -4,7 +4,7 @@ use crate::annuli::Annuli;
 use crate::binary;
 use crate::contacts::memory::{History, Peaks};
 use crate::contacts::pulse::{Load, Mark, Pulse, Watched};
-use crate::contacts::react::{Clock, Touch, first_weight, stored_energy};
+use crate::contacts::react::{Clock, Touch, first_force, first_weight, stored_energy};
 use crate::error::Error;
 use crate::event::{Encounter, Event, Partner};
 use crate::scene::Fruit;
@@ -72,6 +72,7 @@ impl Parcel {
             },
             peaks: Peaks {
                 ended: clock.time,
+                force: first_force(law, touch, clock.step),
                 ..Peaks::default()
             },
             annuli: Annuli::default(),

@@ -141,15 +141,41 @@ pub(crate) fn first_weight(law: &Law, touch: &Touch<f64>, step: f64) -> f64 {
     let damping = |displacement: f64| force(displacement, rate) - force(displacement, 0.0);
     let now = force(displacement, rate);
     let end = displacement + 0.5 * rate * step;
-    // A little more where they touched just as the step began.
-    let touched = rate > 0.0 && now > 0.0 && displacement <= 1.001 * rate * step;
-    if !touched {
+    if now <= 0.0 || !begins(touch, step) {
         return 1.0;
     }
     // Of squares: forces begin with half powers of the displacement.
     let terms = NODES.map(|(node, weight)| 2.0 * weight * node * damping(end * node * node));
     let mean = terms.iter().sum::<f64>() * end / (rate * step);
     1.0 + (mean - damping(displacement)) / now
+}
+
+/// The force just after first touch, which is the largest where damping sets in at once and falls
+/// faster than the elastic force grows; N.
+///
+/// * `touch`: at the end of that step
+pub(crate) fn first_force(law: &Law, touch: &Touch<f64>, step: f64) -> f64 {
+    // Laws have no force where there is no displacement.
+    let displacement = JUST * touch.displacement;
+    let force =
+        || with_law!(law, law => normal_of(law, displacement, touch.rate, displacement).force);
+    if begins(touch, step) {
+        force().max(0.0)
+    } else {
+        0.0
+    }
+}
+
+/// Steps after first touch in which a force is no peak; 1.
+const BEGINNING: f64 = 2.05;
+
+/// Displacement just after first touch, over that at the end of the step; 1.
+const JUST: f64 = 1e-12;
+
+/// Whether two bodies touched within the step before, as they came closer.
+fn begins(touch: &Touch<f64>, step: f64) -> bool {
+    // A little more where they touched just as the step began.
+    touch.rate > 0.0 && touch.displacement <= 1.001 * touch.rate * step
 }
 
 /// Elastic energy of a contact: what it gives back on its way from a displacement, m; J.
@@ -222,7 +248,10 @@ pub(crate) fn react<R: Real>(
     memory.rate = rate;
     memory.normal = force;
     peaks.displacement = peaks.displacement.max(displacement);
-    peaks.force = peaks.force.max(force);
+    // The rate that follows first touch is taken on from one before it: too high for a peak there,
+    // which is known (see [`first_force`]).
+    let begun = displacement - rate * (BEGINNING * clock.step);
+    peaks.force = peaks.force.max(begun.select(force, zero));
     peaks.reach = peaks.reach.max(displacement);
     let seldom = if clock.looks {
         -peaks.below
