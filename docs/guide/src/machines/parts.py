@@ -102,10 +102,11 @@ def deck():
         triangles += prism(
             hexagon, 0, 600, lambda y, z, x: (x, (end if x else begin) + y, z)
         )
-    rail = [((0, -30), (8, -30)), ((0, 100), (8, 100))]
     for side in (-1, 1):
+        left, right = sorted((0, 8 * side))
+        rail = [((left, -30), (right, -30)), ((left, 100), (right, 100))]
         triangles += prism(
-            rail, 0, 610, lambda y, z, x: (x, 250 + side * ((250 if x else 225) + y), z)
+            rail, 0, 610, lambda y, z, x: (x, 250 + side * (250 if x else 225) + y, z)
         )
     return triangles
 
