@@ -15,14 +15,16 @@ struct Typed {
     begin: usize,
 }
 
-/// Does on an empty folder what a reader of the page does: writes the files that
-/// it shows, types its commands, and compares what they print and draw.
+/// Does on an empty folder what a reader of the page does: saves the files that it
+/// links to, writes those that it shows, types its commands, and compares what they
+/// print and draw.
 ///
 /// Returns the number of commands.
 pub fn follow(page: &Page) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let mut count = 0;
     let mut lines: Vec<String> = page.text.lines().map(str::to_owned).collect();
+    save_files(page, folder.path());
     for block in &page.blocks {
         let place = format!("docs/guide/src/{}, line {}", page.name, block.line);
         match block.kind() {
@@ -200,10 +202,32 @@ pub fn line_matches(shown: &str, printed: &str) -> bool {
     rest.ends_with(last)
 }
 
-/// A block with `file=NAME` is that file, one with `append=NAME` is its end.
+/// Saves the scenes, parts and scripts that the page links to, all in one folder.
+fn save_files(page: &Page, folder: &Path) {
+    for target in super::page::links(&page.text) {
+        let path = Path::new(&target);
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        if target.starts_with("https://") || !matches!(ending, Some("toml" | "stl" | "py")) {
+            continue;
+        }
+        let kept = source().join(&page.name).parent().unwrap().join(path);
+        let name = path.file_name().unwrap();
+        std::fs::copy(&kept, folder.join(name))
+            .unwrap_or_else(|error| panic!("{}: {target}: {error}", page.name));
+    }
+}
+
+/// A block with `file=NAME` is that file, one with `append=NAME` is its end, and one
+/// with `part=NAME` stands in it.
 fn write_file(block: &Block, folder: &Path, page: &Page, place: &str) {
     let mut text = block.lines.join("\n");
     text.push('\n');
+    if let Some(name) = block.value("part") {
+        let whole = std::fs::read_to_string(folder.join(name));
+        let whole = whole.unwrap_or_else(|error| panic!("{place}: {name}: {error}"));
+        assert!(whole.contains(&text), "{place}: this is not in {name}");
+        return;
+    }
     let (name, text) = match (block.value("file"), block.value("append")) {
         (Some(name), None) => (name, text),
         (None, Some(name)) => {
