@@ -487,7 +487,7 @@ fn rejects_sensors_that_cannot_be_with_their_line() {
         ("name = \"none\"", &["plane, plate, box or probe"][..]),
         (
             &format!("name = \"two\"\n{plane}\n{space}"),
-            &["plane, plate, box or probe"],
+            &["box", "it has plane already"],
         ),
         (plane, &["name"]),
         (
@@ -548,6 +548,14 @@ fn rejects_sensors_that_cannot_be_with_their_line() {
                 "name = \"p\"\n{plane}\n\n[[sensors]]\nname = \"p\"\n{space}\ninterval = \"1 ms\""
             ),
             &["another sensor has this name"],
+        ),
+        (
+            &format!("name = \"p\"\n{plane}\n{probe}"),
+            &[
+                "probe",
+                "it has plane already",
+                "write a [[sensors]] for each",
+            ],
         ),
         (
             &format!("name = \"p\"\n{plane}\nintervall = \"1 ms\""),

@@ -23,8 +23,10 @@ pub struct State {
     steps: u64,
     rebuilds: u64,
     account: Account,
-    /// Where each fruit that was released came in; m.
+    /// Where each fruit whose time has come came in; m.
     entered: Vec<Vector>,
+    /// Those of them that wait for room, by number.
+    held: Vec<u32>,
     /// Fruit in the scene, by number.
     fruit: Vec<FruitState>,
     /// Contacts with walls and the places of their fruit in `fruit`.
@@ -75,6 +77,7 @@ binary!(State {
     rebuilds,
     account,
     entered,
+    held,
     fruit,
     walls,
     pairs,
@@ -126,6 +129,7 @@ impl State {
         let known = released <= scene.fruit.len()
             && ordered
             && self.fruit.iter().all(|own| fruit(own.fruit))
+            && self.held.iter().all(|own| fruit(*own) && !there(*own))
             && self
                 .pairs
                 .iter()
@@ -175,6 +179,7 @@ impl Saved<'_> {
         own.account.write(to)?;
         let entered = own.scene.fruit[..own.released].iter();
         write_list(entered.map(|own| own.place), to)?;
+        own.held.write(to)?;
         fruit.write(to)?;
         let mut walls = own.wall_contacts_of_bodies();
         walls.sort_by_key(|(body, _)| own.bodies.fruit[*body]);
@@ -313,6 +318,7 @@ impl Simulation {
             .map_err(unfit)?;
         (self.steps, self.rebuilds) = (state.steps, state.rebuilds);
         (self.account, self.released) = (state.account, state.entered.len());
+        self.held.clone_from(&state.held);
         for (fruit, place) in self.scene.fruit.iter_mut().zip(&state.entered) {
             fruit.place = *place;
         }

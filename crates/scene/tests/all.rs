@@ -7,6 +7,7 @@ mod benchmark_impacts;
 mod clumps;
 mod common;
 mod convergence;
+mod entering;
 mod follow;
 mod friction;
 mod loads;

@@ -27,16 +27,20 @@ pub struct Blows {
     with: Vec<Vec<usize>>,
     /// Volumes of their bruises, by the model as it is; m³.
     volumes: Vec<Vec<f64>>,
-    /// Contacts that were too many for a fruit, and weaker than all that are kept of it.
+    /// Whether each fruit is an instrument, which does not bruise and does not count.
+    probes: Vec<bool>,
+    /// Contacts that bruise, but were too many for a fruit, and weaker than all that are kept of it.
     crowded: u64,
 }
 
 /// How many fruit are bruised, and where.
 #[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct BruiseOutcome {
+    /// Fruit that count: all but probes.
+    pub fruit: usize,
     /// Share of fruit whose largest bruise exceeds each limit.
     pub limits: Vec<LimitOutcome>,
-    /// Mean over all fruit of the volume of the largest bruise; m³.
+    /// Mean over these fruit of the volume of the largest bruise; m³.
     pub mean_largest: f64,
     /// What made bruises, the worst first.
     pub places: Vec<PlaceOutcome>,
@@ -83,9 +87,9 @@ pub fn finding_of_blows(blows: &Blows) -> Option<FindingOutcome> {
         FindingOutcome::new(
             "many-blows",
             format!(
-                "of fruit with more than {MOST_BLOWS} contacts above the threshold only the \
-             {MOST_BLOWS} hardest count; {crowded} were left out. A larger threshold leaves out \
-             what does not bruise"
+                "of fruit with more than {MOST_BLOWS} contacts that bruise only the {MOST_BLOWS} \
+                 hardest count; {crowded} were left out. A larger threshold leaves out what does \
+                 not bruise"
             ),
         )
     })
@@ -101,7 +105,13 @@ impl Blows {
     ///
     /// * `shares`: part of the absorbed energy that a fruit takes, by the pair of materials;
     ///   half of it where two fruit meet, all of it on a wall, where nothing is said
-    pub fn new(plan: &BruisePlan, scene: &Scene, shares: &BTreeMap<(usize, usize), f64>) -> Self {
+    /// * `is_probe`: whether a fruit is an instrument, which does not bruise
+    pub fn new(
+        plan: &BruisePlan,
+        scene: &Scene,
+        shares: &BTreeMap<(usize, usize), f64>,
+        is_probe: impl Fn(u32) -> bool,
+    ) -> Self {
         let count = scene.fruit.len();
         let draws = [0, 1].map(|place| normals(plan.seed, STREAM + place, count));
         let [thresholds, volumes] = draws;
@@ -112,6 +122,7 @@ impl Blows {
             of: vec![Vec::new(); count],
             with: vec![Vec::new(); count],
             volumes: vec![Vec::new(); count],
+            probes: (0..count).map(|own| is_probe(own as u32)).collect(),
             outside: [0; 2],
             crowded: 0,
         }
@@ -148,6 +159,9 @@ impl Blows {
         (share, impact_energy, place): (f64, f64, usize),
     ) {
         let number = fruit as usize;
+        if self.probes[number] {
+            return;
+        }
         let (radius, mass) = (scene.fruit[number].mean_radius(), scene.fruit[number].mass);
         let mut blow = Blow::of(event, radius, other, share);
         let (threshold, volume) = self.draws[number];
@@ -190,14 +204,14 @@ impl Blows {
             if let Some((weakest, _)) = volumes.min_by(|a, b| a.1.total_cmp(b.1)) {
                 self.of[number].remove(weakest);
                 self.with[number].remove(weakest);
-                self.volumes[number].remove(weakest);
-                self.crowded += 1;
+                let bruised = self.volumes[number].remove(weakest) > 0.0;
+                self.crowded += u64::from(bruised);
             }
         }
     }
 
-    /// Contacts above the threshold that are not kept: of a fruit that has more than
-    /// [`MOST_BLOWS`] the weakest.
+    /// Contacts that bruise and are not kept: of a fruit that has more than [`MOST_BLOWS`] the
+    /// weakest.
     pub fn crowded(&self) -> u64 {
         self.crowded
     }
@@ -280,7 +294,14 @@ impl Blows {
         let mut pairs: Vec<(usize, usize)> = pairs.collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let bruised: Vec<bool> = bad.iter().map(Option::is_some).collect();
+        // Probes are neither among the fruit nor in pairs.
+        let counted: Vec<usize> = (0..bad.len()).filter(|own| !self.probes[*own]).collect();
+        let among = |fruit: usize| counted.binary_search(&fruit).ok();
+        let pairs = pairs
+            .iter()
+            .filter_map(|&(a, b)| Some((among(a)?, among(b)?)));
+        let pairs: Vec<(usize, usize)> = pairs.collect();
+        let bruised: Vec<bool> = counted.iter().map(|own| bad[*own].is_some()).collect();
         variance_ratio(&bruised, &pairs)
     }
 
@@ -290,7 +311,10 @@ impl Blows {
         let walls = scene.walls.len();
         let ratios = self.variance_ratios(walls);
         let limits: Vec<(f64, f64)> = plan.limits.iter().copied().zip(ratios).collect();
-        let shares = plan.model.shares_above(&self.of, &limits, LEVEL, DRAWS);
+        let fruit = self.of.iter().zip(&self.probes);
+        let fruit = fruit.filter(|(_, probe)| !**probe);
+        let fruit: Vec<Vec<Blow>> = fruit.map(|(own, _)| own.clone()).collect();
+        let shares = plan.model.shares_above(&fruit, &limits, LEVEL, DRAWS);
         let limits = plan.limits.iter().zip(shares);
         let limits = limits.map(|(&limit, found)| LimitOutcome {
             limit,
@@ -324,8 +348,9 @@ impl Blows {
         places.retain(|own| own.bruises > 0);
         places.sort_by(|a, b| b.fruit.cmp(&a.fruit).then(b.largest.total_cmp(&a.largest)));
         BruiseOutcome {
+            fruit: fruit.len(),
             limits: limits.collect(),
-            mean_largest: largest / self.of.len().max(1) as f64,
+            mean_largest: largest / fruit.len().max(1) as f64,
             places,
         }
     }

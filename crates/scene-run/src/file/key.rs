@@ -186,6 +186,27 @@ impl Section<'_> {
         }
     }
 
+    /// Refuses a second of several keys of which one can be given.
+    ///
+    /// * `given`: the keys, with the places of those that are there
+    /// * `advice`: what to do
+    pub fn alone(
+        &self,
+        given: &[(&'static str, Option<Range<usize>>)],
+        advice: &str,
+    ) -> Result<(), Error> {
+        let mut there = given
+            .iter()
+            .filter_map(|(key, at)| Some((key, at.as_ref()?)));
+        match (there.next(), there.next()) {
+            (Some((first, _)), Some((second, at))) => {
+                let problem = format!("it has {first} already: {advice}");
+                Err(self.refused(at, second, self.written(at), problem))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The error of a value that cannot be used.
     pub fn refused(
         &self,

@@ -127,21 +127,11 @@ fn move_of(table: &Section, file: &MoveFile, end: f64) -> Result<Move, Error> {
         ("belt", file.belt.as_ref().map(Spanned::span)),
         ("path", file.path.as_ref().map(Spanned::span)),
     ];
-    let given: Vec<_> = kinds
-        .into_iter()
-        .filter_map(|(key, at)| Some((key, at?)))
-        .collect();
-    match &given[..] {
-        [_] => {}
-        [] => {
-            let meaning = "one of shift, velocity, rotation, vibration, belt, path";
-            let example = "shift = [0, 0, 0.3]";
-            return Err(table.lacks("shift", meaning, example));
-        }
-        [(first, _), (second, at), ..] => {
-            let problem = format!("it has {first} already: write a [[moves]] for each");
-            return Err(table.refused(at, second, table.written(at), problem));
-        }
+    table.alone(&kinds, "write a [[moves]] for each")?;
+    if kinds.iter().all(|(_, at)| at.is_none()) {
+        let meaning = "one of shift, velocity, rotation, vibration, belt, path";
+        let example = "shift = [0, 0, 0.3]";
+        return Err(table.lacks("shift", meaning, example));
     }
     if let Some(path) = &file.path {
         for (key, value) in [

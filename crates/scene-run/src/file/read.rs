@@ -22,7 +22,6 @@ use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::toml_source::{TomlSource, parse_source, place_at, read_piped_source};
 use windfall_scene::scene::{Air, Scene, Sink};
-use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, scaled};
 
 /// A scene as its file says, ready to run but for an automatic time step.
@@ -106,10 +105,11 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
     if kinds.is_empty() {
         return Err(whole.lacks("[[fruit]]", "which fruit come, and how", "[[fruit]]"));
     }
-    let walls = file.walls.iter();
-    let mut findings = Vec::new();
-    let walls = walls.map(|wall| wall_of(source, wall, &materials, &mut findings));
-    let mut walls: Vec<Wall> = walls.collect::<Result<_, _>>()?;
+    let (mut walls, mut findings) = (Vec::new(), Vec::new());
+    for wall in &file.walls {
+        let wall = wall_of(source, wall, (&materials, &walls), &mut findings)?;
+        walls.push(wall);
+    }
     let seed = file.scene.seed.unwrap_or(1);
     let fruit = drawn_fruit(source, &file, &kinds, seed)?;
     // In the order in which they come, which is that of their numbers.

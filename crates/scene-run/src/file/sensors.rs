@@ -96,6 +96,13 @@ pub struct SensorsPlan {
 }
 
 impl SensorsPlan {
+    /// Whether a fruit is a probe.
+    pub fn is_probe(&self, fruit: u32) -> bool {
+        let probes = self.all.iter();
+        let mut probes = probes.filter(|own| matches!(own.kind, SensorKind::Probe { .. }));
+        probes.any(|own| self.counts(own, fruit))
+    }
+
     /// Whether a fruit counts for a sensor.
     pub fn counts(&self, sensor: &SensorPlan, fruit: u32) -> bool {
         let of = |kinds: &Vec<usize>| {
@@ -201,6 +208,13 @@ fn sensor_of(
 ) -> Result<SensorPlan, Error> {
     let name = file.name.as_ref().map(Spanned::get_ref);
     let name = name.ok_or_else(|| table.lacks("name", "its name", "name = \"end of the belt\""))?;
+    let kinds_given = [
+        ("plane", file.plane.as_ref().map(Spanned::span)),
+        ("plate", file.plate.as_ref().map(Spanned::span)),
+        ("box", file.space.as_ref().map(Spanned::span)),
+        ("probe", file.probe.as_ref().map(Spanned::span)),
+    ];
+    table.alone(&kinds_given, "write a [[sensors]] for each")?;
     let (kind, sampled) = match (&file.plane, &file.plate, &file.space, &file.probe) {
         (Some(own), None, None, None) => {
             let normal = normal_of(table, own, name)?;

@@ -115,10 +115,12 @@ pub const PLACES: [(&str, &[&str]); 6] = [
 ];
 
 /// A wall; adds findings about its shape.
+///
+/// * `walls`: those before it
 pub fn wall_of(
     source: &TomlSource,
     wall: &Spanned<WallFile>,
-    materials: &[String],
+    (materials, walls): (&[String], &[Wall]),
     findings: &mut Vec<FindingOutcome>,
 ) -> Result<Wall, Error> {
     let file = wall.get_ref();
@@ -129,10 +131,23 @@ pub fn wall_of(
     };
     let name = file.name.as_ref();
     let name = name.ok_or_else(|| table.lacks("name", "its name", "name = \"chute\""))?;
-    let name = name.get_ref();
+    let (name, at) = (name.get_ref(), name.span());
+    if walls.iter().any(|own| own.name == *name) {
+        let problem =
+            "another wall has this name: tables, moves and messages tell walls apart by it";
+        return Err(table.refused(&at, "name", name, problem));
+    }
     let own = file.material.as_ref();
     let own = own.ok_or_else(|| table.lacks("material", "its material", "material = \"steel\""))?;
     let material = table.material(&own.span(), "material", own.get_ref(), materials)?;
+    let given = [
+        ("plane", file.plane.as_ref().map(Spanned::span)),
+        ("plate", file.plate.as_ref().map(Spanned::span)),
+        ("box", file.bin.as_ref().map(Spanned::span)),
+        ("cylinder", file.cylinder.as_ref().map(Spanned::span)),
+        ("mesh", file.mesh.as_ref().map(Spanned::span)),
+    ];
+    table.alone(&given, "write a [[walls]] for each")?;
     let shapes = [
         file.plane.as_ref().map(|own| plane_of(&table, own, name)),
         file.plate
@@ -146,8 +161,7 @@ pub fn wall_of(
             .as_ref()
             .map(|own| mesh_of(&table, own, name, findings)),
     ];
-    let mut shapes = shapes.into_iter().flatten();
-    let (Some(shape), None) = (shapes.next(), shapes.next()) else {
+    let Some(shape) = shapes.into_iter().flatten().next() else {
         let key = "plane, plate, box, cylinder or mesh";
         let meaning = "one of plane, plate, box, cylinder, mesh";
         let example = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";

@@ -183,7 +183,10 @@ impl SceneRun {
             frames,
             sensors,
             tally: Tally::new(plan),
-            blows: bruise.map(|own| Blows::new(own, &plan.scene, &plan.fruit_shares)),
+            blows: bruise.map(|own| {
+                let is_probe = |fruit| plan.sensors.is_probe(fruit);
+                Blows::new(own, &plan.scene, &plan.fruit_shares, is_probe)
+            }),
             before: (begun / step).round() as u64,
             first_closure: 0.0,
             checkpoint,

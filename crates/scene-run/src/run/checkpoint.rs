@@ -21,7 +21,7 @@ use windfall_scene::scene::Scene;
 const MAGIC: [u8; 8] = *b"WFSCENE\n";
 
 /// Version of its shape.
-const SHAPE: u32 = 5;
+const SHAPE: u32 = 6;
 
 /// Name in the directory of the results.
 const NAME: &str = "checkpoint.bin";

@@ -89,7 +89,10 @@ fn counts(replicates: &[Replicate], limit: usize) -> Counts {
     let of = |own: &Replicate| own.above.iter().map(|model| model[limit]).collect();
     Counts {
         above: replicates.iter().map(of).collect(),
-        fruit: replicates.first().map_or(0, |own| own.scene.fruit),
+        fruit: replicates
+            .first()
+            .and_then(|own| own.scene.bruise.as_ref())
+            .map_or(0, |own| own.fruit),
         variance_ratio: replicates
             .first()
             .and_then(|own| own.variance_ratios.get(limit).copied())

@@ -115,6 +115,14 @@ impl WallState {
         facet.closest(placed.map(|(now, _)| now), place)
     }
 
+    /// Whether a wall that moves is now where a sphere is to be.
+    pub(crate) fn moved_into(&self, place: Vector, radius: f64) -> bool {
+        self.facets.iter().any(|(wall, facet)| {
+            let placed = self.placed[*wall as usize].as_ref();
+            placed.is_some_and(|(now, _)| facet.closest(Some(now), place).distance < radius)
+        })
+    }
+
     /// The closest point of a part half a step ago.
     pub(crate) fn closest_before(&self, facet: u32, place: Vector) -> Closest {
         let (wall, facet) = &self.facets[facet as usize];

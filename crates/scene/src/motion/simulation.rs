@@ -60,8 +60,10 @@ pub struct Simulation {
     pub(crate) skin: f64,
     pub(crate) lacks: f64,
     pub(crate) steps: u64,
-    /// Fruit that has come, by number.
+    /// Fruit whose time has come, by number.
     pub(crate) released: usize,
+    /// Those of them that wait for room, by number.
+    pub(crate) held: Vec<u32>,
     pub(crate) events: Vec<Event>,
     pub(crate) taken: Vec<Leaving>,
     pub(crate) account: Account,
@@ -155,6 +157,7 @@ impl Simulation {
             lacks,
             steps: 0,
             released: 0,
+            held: Vec::new(),
             events: Vec::new(),
             taken: Vec::new(),
             account: Account::default(),
@@ -180,11 +183,6 @@ impl Simulation {
     /// Fruit in the scene now.
     pub fn count(&self) -> usize {
         self.clumps.len() + self.bodies.clump.iter().filter(|own| **own == NONE).count()
-    }
-
-    /// Fruit that are still to come.
-    pub fn waiting(&self) -> usize {
-        self.scene.fruit.len() - self.released
     }
 
     /// Contacts of two fruit now.

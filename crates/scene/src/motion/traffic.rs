@@ -25,26 +25,53 @@ const SPREAD_OUT: [f64; 3] = [
     0.549_700_477_901_970_3,
 ];
 
+/// Where a fruit comes in: a box, or a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Source([Vector; 2]);
+
+impl Source {
+    fn of(fruit: &Fruit) -> Self {
+        Self(fruit.elsewhere.unwrap_or([fruit.place; 2]))
+    }
+}
+
 impl Simulation {
+    /// Whether fruit are to come in now, or wait for room.
     pub(crate) fn due(&self) -> bool {
+        self.comes_next() || !self.held.is_empty()
+    }
+
+    fn comes_next(&self) -> bool {
         let next = self.scene.fruit.get(self.released);
         next.is_some_and(|fruit| fruit.time <= self.time())
     }
 
-    /// Releases the fruit that are due.
+    /// Releases the fruit that are due. One that finds no room waits until there is some, and all
+    /// that come in at the same place wait behind it.
     pub(crate) fn release(&mut self) -> Result<(), Error> {
         let (step, gravity) = (self.scene.time_step, self.scene.gravity);
+        let mut due = std::mem::take(&mut self.held);
+        while self.comes_next() {
+            due.push(self.released as u32);
+            self.released += 1;
+        }
+        let mut taken: Vec<Source> = Vec::new();
         let mut came = false;
-        while self.due() {
-            let number = self.released as u32;
-            if self.in_the_way(&self.scene.fruit[self.released]) {
-                let Some(place) = self.another_place(&self.scene.fruit[self.released]) else {
-                    // It waits until there is room.
-                    break;
-                };
-                self.scene.fruit[self.released].place = place;
+        for number in due {
+            let source = Source::of(&self.scene.fruit[number as usize]);
+            if taken.contains(&source) {
+                self.held.push(number);
+                continue;
             }
-            let fruit = &self.scene.fruit[self.released];
+            if self.in_the_way(&self.scene.fruit[number as usize]) {
+                let Some(place) = self.another_place(&self.scene.fruit[number as usize]) else {
+                    self.held.push(number);
+                    taken.push(source);
+                    continue;
+                };
+                self.scene.fruit[number as usize].place = place;
+            }
+            let fruit = &self.scene.fruit[number as usize];
             self.account.brought += 0.5 * fruit.mass * dot(fruit.velocity, fruit.velocity)
                 - fruit.mass * dot(gravity, fruit.place);
             self.account.brought += match &fruit.clump {
@@ -59,13 +86,18 @@ impl Simulation {
                 spin: fruit.spin,
                 turn: turn.unwrap_or(Fruit::ORIENTATION),
             });
-            self.released += 1;
             came = true;
         }
         if came {
             self.rebuild();
         }
         Ok(())
+    }
+
+    /// Fruit that should have come in by now, and found no room.
+    pub fn waiting(&self) -> usize {
+        let (time, still_to_come) = (self.time(), &self.scene.fruit[self.released..]);
+        self.held.len() + still_to_come.iter().filter(|own| own.time < time).count()
     }
 
     /// One fruit more; the list of neighbours does not know it yet.
@@ -144,12 +176,15 @@ impl Simulation {
         None
     }
 
-    /// Whether a fruit occupies a release place. Those of the beginning are checked together.
+    /// Whether a fruit, or a wall that has moved there, occupies a release place. Those of the
+    /// beginning are checked together.
     fn in_the_way(&self, fruit: &Fruit) -> bool {
         let overlaps = |&HalfLine([x, y, z, radius]): &HalfLine| {
             length(subtract([x, y, z], fruit.place)) < radius + fruit.radius
         };
-        self.steps > 0 && self.bodies.place.iter().any(overlaps)
+        self.steps > 0
+            && (self.bodies.place.iter().any(overlaps)
+                || self.walls.moved_into(fruit.place, fruit.radius))
     }
 
     /// Removes fruit that are in a sink.

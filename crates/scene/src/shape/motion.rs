@@ -326,13 +326,12 @@ impl Motion {
         found
     }
 
-    /// A point of the axis that it turns about at rest, where it turns; m.
-    pub(crate) fn pivot(&self) -> Vector {
-        let axis = self.moves.iter().find_map(Move::axis);
-        axis.map_or([0.0; 3], |own| own.point)
+    /// The axis at rest that it turns about, where it turns.
+    pub(crate) fn axis(&self) -> Option<Axis> {
+        self.moves.iter().find_map(Move::axis)
     }
 
-    /// The largest speed of a point of the wall that is within `reach` of the pivot, between two
+    /// The largest speed of a point of the wall that is within `reach` of its axis, between two
     /// times; m/s.
     pub(crate) fn largest_speed(&self, reach: f64, between: [f64; 2]) -> f64 {
         let speeds = self

@@ -176,13 +176,6 @@ impl Shape {
             }
         }
     }
-
-    /// The largest distance of its points from a pivot; m. Infinite for planes.
-    pub(crate) fn reach(&self, pivot: Vector) -> f64 {
-        let (points, reach) = self.skeleton();
-        let from = points.iter().map(|own| length(subtract(*own, pivot)));
-        from.fold(0.0, f64::max) + reach
-    }
 }
 
 /// A rectangle of a plane that reaches around a box.

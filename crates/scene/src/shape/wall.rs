@@ -2,6 +2,7 @@
 
 use crate::shape::motion::Motion;
 use crate::shape::surface::Shape;
+use crate::vector::{Vector, cross, length, subtract};
 
 /// A wall of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +24,15 @@ impl Wall {
         self.motion.largest_speed(self.reach(), between)
     }
 
-    /// How far its points are from the axis that it turns about; 0 of an endless plane; m.
+    /// How far its points are from the axis that it turns about; 0 of an endless plane, and where it
+    /// does not turn; m.
     pub(crate) fn reach(&self) -> f64 {
-        let reach = self.shape.reach(self.motion.pivot());
+        let Some(axis) = self.motion.axis() else {
+            return 0.0;
+        };
+        let (points, reach) = self.shape.skeleton();
+        let off = |own: &Vector| length(cross(subtract(*own, axis.point), axis.direction));
+        let reach = points.iter().map(off).fold(0.0, f64::max) + reach;
         if reach.is_finite() { reach } else { 0.0 }
     }
 }

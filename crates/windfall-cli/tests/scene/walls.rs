@@ -253,6 +253,14 @@ fn rejects_stl_files_that_cannot_be_used() {
         }
     }
     let folder = tempfile::tempdir().unwrap();
+    let both =
+        format!("{CONVEYOR}\ncylinder = {{ start = [0, 0, 0], end = [0, 1, 0], diameter = 1 }}");
+    single(folder.path(), &[(CONVEYOR, &both)]);
+    let problem = refused(folder.path());
+    assert!(problem.contains("it has plate already"), "{problem}");
+    single(folder.path(), &[("name = \"pad\"", "name = \"bin\"")]);
+    let problem = refused(folder.path());
+    assert!(problem.contains("another wall has this name"), "{problem}");
     let mesh = "mesh = { file = \"none.stl\", unit = \"mm\" }";
     single(folder.path(), &[(CONVEYOR, mesh)]);
     assert!(refused(folder.path()).contains("none.stl"));

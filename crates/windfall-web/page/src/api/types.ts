@@ -15,7 +15,9 @@ export interface BlockEffect { block: string; effect: number; }
 export type BlockOutcome = SumOfSquares & { effects: BlockEffect[]; };
 export interface Bounds { low: [number, number, number]; high: [number, number, number]; }
 export interface BoxCoxOutcome { lambda: number; low: number | null; high: number | null; }
-export interface BruiseOutcome { limits: LimitOutcome[]; mean_largest: number; places: PlaceOutcome[]; }
+export interface BruiseOutcome {
+  fruit: number; limits: LimitOutcome[]; mean_largest: number; places: PlaceOutcome[];
+}
 export interface CalibrateOutcome {
   windfall: string; campaign: string; simulated: string | null; law: string; free: string[];
   plate: Record<string, MeasuredValue>; drops: DropOutcome[]; target: TargetOutcome; start: StartOutcome;
