@@ -7,7 +7,7 @@ use crate::motion::Frames;
 use crate::program::{Program, find_program, wrong};
 use crate::ranks::library::{find_library, unusable};
 use crate::ranks::merge::{Pulses, start_ranks};
-use crate::ranks::part::part_name;
+use crate::ranks::part::{part_name, scene_of};
 use crate::simplify::simplified;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::{ScenePlan, read_scene};
 use windfall_scene_run::file_error::make_directory;
 use windfall_scene_run::run::advance::{Mover, SceneStart};
-use windfall_scene_run::run::checkpoint::{Parts, parts_of};
+use windfall_scene_run::run::checkpoint::Parts;
 use windfall_scene_run::run::outcome::{SceneOutcome, StepOutcome};
 use windfall_scene_run::run::workflow::{
     Moved, SceneRequest, directory_of, run_moved, run_scene, time_step,
@@ -71,8 +71,8 @@ pub struct DeckRequest {
     /// its own
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = crate::classes::MOST))]
     pub classes: usize,
-    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
-    /// frames at least if left out
+    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 40
+    /// frames of LAMMPS or 80 of LIGGGHTS at least if left out
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub frame_steps: Option<u64>,
 }
@@ -94,8 +94,10 @@ pub struct DeckOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// Frames in the shortest contact that is expected, at least.
+/// Frames in the shortest contact that is expected, at least; of LAMMPS, whose ranks are followed
+/// while they run, as many as cost less than its own steps do.
 const FRAMES_IN_CONTACT: f64 = 80.0;
+const FRAMES_OF_RANKS: f64 = 40.0;
 /// Lack of the energy account that is worth a word; 1.
 const LARGE_CLOSURE: f64 = 0.02;
 
@@ -125,9 +127,13 @@ fn ready(path: &Path, engine: Engine, request: &DeckRequest) -> Result<Ready, Er
                        clumps with every sphere";
         return Err(wrong(engine, problem.to_owned()));
     }
-    let scene = parts_of(&plan);
+    let scene = scene_of(&plan);
     let findings = simplified(&mut plan, engine);
-    let every = step.contact_duration / (FRAMES_IN_CONTACT * step.time_step);
+    let frames = match engine {
+        Engine::Lammps => FRAMES_OF_RANKS,
+        _ => FRAMES_IN_CONTACT,
+    };
+    let every = step.contact_duration / (frames * step.time_step);
     let frame_steps = request.frame_steps.unwrap_or((every as u64).max(1)).max(1);
     let frames = (plan.end / (frame_steps as f64 * step.time_step)).ceil() as u64;
     let task = Task::new(

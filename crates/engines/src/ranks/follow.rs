@@ -3,12 +3,13 @@
 use crate::deck::LOG;
 use crate::program::wrong;
 use crate::ranks::library::VERSION;
-use crate::ranks::part::{End, Head, PartWriter, Record, part_name, partial_name};
+use crate::ranks::part::{End, Head, PartWriter, Record, part_name, partial_name, scene_of};
 use crate::simplify::simplified;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use windfall_files::error::Error;
+use windfall_files::on_threads::on_threads;
 use windfall_files::written::list_written_as;
 use windfall_lammps::mpi::Ranks;
 use windfall_lammps::run::{Atoms, Lammps, Library};
@@ -18,7 +19,6 @@ use windfall_scene::share::{Answer, Offer, Seen, Share};
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::{ScenePlan, read_scene};
 use windfall_scene_run::file_error::access;
-use windfall_scene_run::run::checkpoint::parts_of;
 use windfall_scene_run::run::workflow::time_step;
 use windfall_scene_run::stopped_scene as stopped;
 
@@ -53,6 +53,11 @@ const FIX: &str = "windfall";
 /// The library, the scene or the deck cannot be used; the pulses cannot be written. Where other
 /// ranks wait it says so and ends them all.
 pub fn run_rank(request: &RankRequest) -> Result<(), Error> {
+    // Every core has a rank of its own; threads that wait for work would take it from them.
+    on_threads(Some(1), || run_alone(request))
+}
+
+fn run_alone(request: &RankRequest) -> Result<(), Error> {
     let failed = |problem: String| wrong(Engine::Lammps, problem);
     let path = &request.library;
     let told = |problem: String| failed(format!("{}: {problem}", path.display()));
@@ -75,7 +80,7 @@ pub fn run_rank(request: &RankRequest) -> Result<(), Error> {
         split(&deck).ok_or_else(|| failed(format!("{} is no deck of windfall", path.display())))?;
     let mut plan = read_scene(file)?;
     time_step(&mut plan)?;
-    let scene = parts_of(&plan);
+    let scene = scene_of(&plan);
     simplified(&mut plan, Engine::Lammps);
     plan.scene.time_step *= frame_steps as f64;
     let directory = std::path::absolute(directory).map_err(access(directory, "read"))?;
@@ -137,7 +142,9 @@ fn run(
 
 /// Says what is wrong, and ends all ranks: others would wait for this one.
 fn give_up(ranks: &Ranks, error: &Error) -> ! {
-    let said = format!("ERROR on rank {}: {error}\n", ranks.rank);
+    let cause = std::error::Error::source(error);
+    let cause = cause.map_or(String::new(), |own| format!(": {own}"));
+    let said = format!("ERROR on rank {}: {error}{cause}\n", ranks.rank);
     let _ = std::io::stderr().write_all(said.as_bytes());
     ranks.abort(1)
 }

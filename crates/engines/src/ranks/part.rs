@@ -8,13 +8,15 @@ use std::io::{BufWriter, Read, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::provenance::VERSION;
+use windfall_files::written::check_plain;
 use windfall_scene::binary;
 use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::motion::simulation::{FruitState, Leaving};
+use windfall_scene_run::file::read::ScenePlan;
 use windfall_scene_run::file_error::access;
-use windfall_scene_run::run::checkpoint::Parts;
+use windfall_scene_run::run::checkpoint::{Parts, parts_of};
 
 /// How a part begins.
 const MAGIC: [u8; 8] = *b"WFPULSE\n";
@@ -75,6 +77,13 @@ binary!(Record {
 });
 binary!(End { lasting, fruit });
 
+/// What pulses depend on. A scene without a title is named after its file, which may have moved.
+pub(crate) fn scene_of(plan: &ScenePlan) -> Parts {
+    let mut parts = parts_of(plan);
+    parts.retain(|(name, _)| name != "the title");
+    parts
+}
+
 /// Name of a part.
 pub(crate) fn part_name(rank: usize) -> String {
     format!("pulses.{rank}.bin")
@@ -95,6 +104,7 @@ impl PartWriter {
     /// A part without records.
     pub fn create(directory: &Path, head: &Head) -> Result<Self, Error> {
         let path = directory.join(partial_name(head.rank));
+        check_plain(&path)?;
         let file = File::create(&path).map_err(access(&path, "write"))?;
         let mut own = Self {
             path,
@@ -253,6 +263,20 @@ fn head_of(from: &mut &[u8]) -> Result<Head, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_full_disk_is_told_with_the_name_of_the_part() {
+        let file = File::options().write(true).open("/dev/full").unwrap();
+        let mut writer = PartWriter {
+            path: PathBuf::from("deck/pulses.3.bin.partial"),
+            to: BufWriter::new(file),
+        };
+        writer.write(&Record::default()).unwrap();
+        let problem = writer.flush().unwrap_err();
+        let cause = std::error::Error::source(&problem).unwrap().to_string();
+        assert!(problem.to_string().contains("pulses.3.bin"), "{problem}");
+        assert!(cause.contains("No space left"), "{cause}");
+    }
 
     #[test]
     fn a_part_is_read_while_it_grows_and_damage_is_told() {

@@ -119,6 +119,10 @@ impl Gather<'_> {
         if self.with_energy {
             self.energies(&block, step, &mut sums);
         }
+        // Who follows others is told where they go.
+        if !self.foreign.is_empty() {
+            return (outcome, sums);
+        }
         let bodies = block.place.len();
         let furthest = with_four_lanes(Move {
             place: &mut *block.place,

@@ -352,7 +352,11 @@ fn an_exported_deck_runs_by_itself_and_its_frames_are_read() {
     let frames = deck.join("frames.bin");
     let read = ["--engine", "lammps", "--frames", frames.to_str().unwrap()];
     run(folder.path(), "read", &read);
-    run(folder.path(), "run", &["--engine", "lammps"]);
+    run(
+        folder.path(),
+        "run",
+        &["--engine", "lammps", "--engine-frames"],
+    );
     same(
         &contacts(folder.path(), "read"),
         &contacts(folder.path(), "run"),
