@@ -3,14 +3,13 @@
 use crate::deck::LOG;
 use crate::program::wrong;
 use crate::ranks::library::VERSION;
-use crate::ranks::part::{End, Head, PartWriter, Record, part_name, partial_name, scene_of};
+use crate::ranks::part::{End, Head, PartWriter, Record, name_parts, scene_of};
 use crate::simplify::simplified;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use windfall_files::error::Error;
 use windfall_files::on_threads::on_threads;
-use windfall_files::written::list_written_as;
 use windfall_lammps::mpi::Ranks;
 use windfall_lammps::run::{Atoms, Lammps, Library};
 use windfall_scene::binary::Binary;
@@ -271,12 +270,6 @@ impl<'a> Following<'a> {
         if self.ranks.rank > 0 {
             return Ok(());
         }
-        for rank in 0..self.ranks.size {
-            let [part, partial] = [part_name(rank), partial_name(rank)];
-            let [part, partial] = [part, partial].map(|name| self.directory.join(name));
-            list_written_as(&part, &partial)?;
-            std::fs::rename(&partial, &part).map_err(access(&part, "write"))?;
-        }
-        Ok(())
+        name_parts(&self.directory, self.ranks.size)
     }
 }

@@ -2,18 +2,16 @@
 
 use crate::deck::LOG;
 use crate::program::{Launch, Program, wrong};
-use crate::ranks::part::{End, PartReader, Record, part_name, partial_name};
+use crate::ranks::part::{End, PartReader, Record, part_name, partial_name, remove_parts};
 use crate::running::Running;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use windfall_files::error::Error;
-use windfall_files::write_file::check_target;
 use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::ScenePlan;
-use windfall_scene_run::file_error::access;
 use windfall_scene_run::run::advance::Mover;
 use windfall_scene_run::run::checkpoint::{Parts, changed_parts};
 
@@ -32,16 +30,8 @@ pub(crate) fn start_ranks(
     directory: &Path,
 ) -> Result<Running, Error> {
     Running::make_room(directory, &[LOG])?;
-    for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let name = name.to_str().unwrap_or_default();
-        if name.starts_with("pulses.") {
-            let path = entry.path();
-            check_target(&path)?;
-            // Of a run that was stopped.
-            std::fs::remove_file(&path).map_err(access(&path, "replace"))?;
-        }
-    }
+    // Of a run that was stopped.
+    remove_parts(directory)?;
     let absolute = |path: &Path| {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
         path.display().to_string()
@@ -279,10 +269,6 @@ impl Drop for Pulses {
         if self.running.take().is_none() {
             return;
         }
-        for rank in 0..self.ranks.len() {
-            for name in [partial_name(rank), part_name(rank)] {
-                let _ = std::fs::remove_file(self.directory.join(name));
-            }
-        }
+        let _ = remove_parts(&self.directory);
     }
 }

@@ -8,7 +8,8 @@ use std::io::{BufWriter, Read, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::provenance::VERSION;
-use windfall_files::written::check_plain;
+use windfall_files::write_file::check_target;
+use windfall_files::written::{check_plain, list_written_as};
 use windfall_scene::binary;
 use windfall_scene::binary::{Binary, no_value};
 use windfall_scene::energy::Energy;
@@ -94,6 +95,43 @@ pub(crate) fn partial_name(rank: usize) -> String {
     format!("{}.partial", part_name(rank))
 }
 
+/// Removes the parts of an earlier run.
+///
+/// # Errors
+/// A file of that name is of somebody else, or cannot be removed.
+pub(crate) fn remove_parts(directory: &Path) -> Result<(), Error> {
+    for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let rank = name.to_str().and_then(|own| {
+            let own = own.strip_prefix("pulses.")?;
+            let own = own.strip_suffix(".partial").unwrap_or(own);
+            own.strip_suffix(".bin")?.parse().ok()
+        });
+        let Some(rank) = rank else {
+            continue;
+        };
+        let path = entry.path();
+        check_target(&directory.join(part_name(rank)))?;
+        check_plain(&path)?;
+        std::fs::remove_file(&path).map_err(access(&path, "replace"))?;
+    }
+    Ok(())
+}
+
+/// Gives the parts of all ranks their names.
+///
+/// # Errors
+/// They cannot be renamed.
+pub(crate) fn name_parts(directory: &Path, ranks: usize) -> Result<(), Error> {
+    for rank in 0..ranks {
+        let [part, partial] = [part_name(rank), partial_name(rank)];
+        let [part, partial] = [part, partial].map(|name| directory.join(name));
+        list_written_as(&part, &partial)?;
+        std::fs::rename(&partial, &part).map_err(access(&part, "write"))?;
+    }
+    Ok(())
+}
+
 /// A part that grows.
 pub(crate) struct PartWriter {
     path: PathBuf,
@@ -104,6 +142,7 @@ impl PartWriter {
     /// A part without records.
     pub fn create(directory: &Path, head: &Head) -> Result<Self, Error> {
         let path = directory.join(partial_name(head.rank));
+        check_target(&directory.join(part_name(head.rank)))?;
         check_plain(&path)?;
         let file = File::create(&path).map_err(access(&path, "write"))?;
         let mut own = Self {

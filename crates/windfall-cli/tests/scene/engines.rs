@@ -368,7 +368,7 @@ fn an_exported_deck_runs_by_itself_and_its_frames_are_read() {
     std::fs::write(folder.path().join("short.bin"), &whole[..whole.len() / 2]).unwrap();
     for (name, steps, word) in [
         ("short.bin", None, "cut short"),
-        ("scene.lammps/frames.bin", Some("3"), "another deck"),
+        ("scene.lammps/frames.bin", Some("7"), "another deck"),
         ("scene.toml", None, "no dump"),
         ("none.bin", None, "no such file"),
     ] {
