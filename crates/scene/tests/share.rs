@@ -158,7 +158,7 @@ fn repeats_pulses_to_the_last_bit_in_any_number_of_parts() {
     }
     let [one, two, four] = &mut parts;
     assert!(
-        two.handed > 20 && four.handed > 20,
+        two.handed > 15 && four.handed > 15,
         "{} {}",
         two.handed,
         four.handed
