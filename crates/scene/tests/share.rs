@@ -14,6 +14,7 @@ use windfall_scene::vector::Vector;
 fn rolling() -> Scene {
     let mut scene = scene(2e-5);
     scene.fruit.clear();
+    scene.sinks[0].low[0] = 0.06;
     for number in 0..24 {
         let (column, row) = (f64::from(number % 4), f64::from(number / 4));
         let place = [0.09 * column - 0.3, 0.078 * row - 0.2, 0.036 + 0.004 * row];
