@@ -17,52 +17,13 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from scene_bin_toml import write_scene
 
 LEAST, DRAWS, QUANTILES = 1.0, 400, (0.25, 0.5, 0.75, 0.9, 0.95, 0.99)
 windfall, count, folder = sys.argv[1], int(sys.argv[2]), Path(sys.argv[3])
 end = sys.argv[4] if len(sys.argv) > 4 else "0.4"
-side = max(4, round(count ** (1 / 3)))
-width, height = side * 0.084, (count // side**2 + 2) * 0.084
 folder.mkdir(parents=True, exist_ok=True)
-planes = [
-    ("floor", [0, 0, 0], [0, 0, 1]),
-    ("left", [0, 0, 0], [1, 0, 0]),
-    ("right", [width, 0, 0], [-1, 0, 0]),
-    ("front", [0, 0, 0], [0, 1, 0]),
-    ("back", [0, width, 0], [0, -1, 0]),
-]
-contact = 'friction = 0.3\nannuli = 1\npoisson = 0.3\ntangential_damping = 1.0\n'
-(folder / "scene.toml").write_text(
-    f"""format = 1
-materials = ["apple", "steel"]
-[scene]
-title = "A bin of {count} apples"
-gravity = "9.81 m/s^2"
-time_step = "20 us"
-end = "{end} s"
-[[contacts]]
-between = ["apple", "apple"]
-law = "kuwabara-kono(k=753599, c=1524)"
-effective_radius = "18.75 mm"
-{contact}
-[[contacts]]
-between = ["apple", "steel"]
-law = "kuwabara-kono(k=753599, c=1524)"
-effective_radius = "37.5 mm"
-{contact}
-[[fruit]]
-material = "apple"
-count = {count}
-diameter = "75 mm"
-diameter_sd = "2 mm"
-density = "840 kg/m^3"
-lattice = {{ low = [0, 0, 0], high = [{width}, {width}, {height}], velocity = [0.05, 0.03, -0.5] }}
-"""
-    + "".join(
-        f'[[walls]]\nname = "{name}"\nmaterial = "steel"\nplane = {{ point = {point}, normal = {normal} }}\n'
-        for name, point, normal in planes
-    )
-)
+write_scene(folder / "scene.toml", count, end)
 
 
 def run(engine):

@@ -137,6 +137,11 @@ pub fn find_program(engine: Engine, given: Option<&Path>) -> Result<Program, Err
 }
 
 impl Program {
+    /// Its version as one number of year, month and day, as LAMMPS's library says it.
+    pub fn date(&self) -> Option<u32> {
+        date_of(&self.version).map(|[year, month, day]| (year * 100 + month) * 100 + day)
+    }
+
     /// Whether this LAMMPS is new enough and has the styles of decks.
     fn suits(&self) -> Result<(), Error> {
         if date_of(&self.version).is_none_or(|date| date < OLDEST) {
@@ -240,10 +245,16 @@ impl Program {
 
     /// The command that runs a deck in a directory.
     pub fn command(&self, launch: &Launch, deck: &str, directory: &Path) -> Command {
-        let mut command = Command::new(&launch.command[0]);
+        let mut command = self.started(&launch.command, directory);
+        command.args(["-in", deck, "-log", LOG]);
         command
-            .args(&launch.command[1..])
-            .args(["-in", deck, "-log", LOG])
+    }
+
+    /// A command that runs in a directory as this engine is to run.
+    pub fn started(&self, words: &[String], directory: &Path) -> Command {
+        let mut command = Command::new(&words[0]);
+        command
+            .args(&words[1..])
             .current_dir(directory)
             .env(TEMPORARY, self.scratch.path())
             // Ranks share the cores; Open MPI does not start for root unasked.

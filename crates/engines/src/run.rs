@@ -4,7 +4,11 @@ use crate::deck::{Deck, Task};
 use crate::lammps::deck::lammps_deck;
 use crate::liggghts::deck::liggghts_deck;
 use crate::motion::Frames;
-use crate::program::{find_program, wrong};
+use crate::program::{Program, find_program, wrong};
+use crate::ranks::library::{find_library, unusable};
+use crate::ranks::merge::{Pulses, start_ranks};
+use crate::ranks::part::{part_name, scene_of};
+use crate::simplify::simplified;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
@@ -16,7 +20,8 @@ use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::{ScenePlan, read_scene};
 use windfall_scene_run::file_error::make_directory;
-use windfall_scene_run::run::advance::SceneStart;
+use windfall_scene_run::run::advance::{Mover, SceneStart};
+use windfall_scene_run::run::checkpoint::Parts;
 use windfall_scene_run::run::outcome::{SceneOutcome, StepOutcome};
 use windfall_scene_run::run::workflow::{
     Moved, SceneRequest, directory_of, run_moved, run_scene, time_step,
@@ -35,6 +40,20 @@ pub struct EngineRequest {
     /// For LAMMPS and LIGGGHTS: the program, if it is not on the path as lmp or liggghts
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
     pub engine_program: Option<PathBuf>,
+    /// For LAMMPS: its library, if it is neither beside the program nor where the system looks
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with_all = ["frames", "pulses"]))]
+    pub engine_library: Option<PathBuf>,
+    /// For LAMMPS: read where all fruit are every few steps, and find contacts outside of its ranks
+    #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["frames", "pulses", "engine_library"]))]
+    pub engine_frames: bool,
+    /// For LAMMPS: pulses that the ranks of an earlier run found, by the directory of its deck, instead
+    /// of a new run
+    #[cfg_attr(feature = "clap", arg(long, value_name = "DIR", value_hint = clap::ValueHint::DirPath, conflicts_with = "frames"))]
+    pub pulses: Option<PathBuf>,
+    /// windfall itself, which each rank of LAMMPS starts; without it contacts are found outside of
+    /// the ranks.
+    #[cfg_attr(feature = "clap", arg(skip))]
+    pub windfall: Option<PathBuf>,
     /// For LAMMPS and LIGGGHTS: frames that an earlier run of the scene's deck wrote, instead of a new
     /// run
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath))]
@@ -52,8 +71,8 @@ pub struct DeckRequest {
     /// its own
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", default_value_t = crate::classes::MOST))]
     pub classes: usize,
-    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 80
-    /// frames at least if left out
+    /// For LAMMPS and LIGGGHTS: steps between frames, of which contacts are made; a contact lasts 40
+    /// frames of LAMMPS or 80 of LIGGGHTS at least if left out
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub frame_steps: Option<u64>,
 }
@@ -75,14 +94,18 @@ pub struct DeckOutcome {
     pub findings: Vec<FindingOutcome>,
 }
 
-/// Frames in the shortest contact that is expected, at least.
+/// Frames in the shortest contact that is expected, at least; of LAMMPS, whose ranks are followed
+/// while they run, as many as cost less than its own steps do.
 const FRAMES_IN_CONTACT: f64 = 80.0;
+const FRAMES_OF_RANKS: f64 = 40.0;
 /// Lack of the energy account that is worth a word; 1.
 const LARGE_CLOSURE: f64 = 0.02;
 
 /// A scene made ready for an engine.
 struct Ready {
     plan: ScenePlan,
+    /// Digests of the scene as it was read.
+    scene: Parts,
     step: StepOutcome,
     deck: Deck,
     frame_steps: u64,
@@ -104,8 +127,13 @@ fn ready(path: &Path, engine: Engine, request: &DeckRequest) -> Result<Ready, Er
                        clumps with every sphere";
         return Err(wrong(engine, problem.to_owned()));
     }
+    let scene = scene_of(&plan);
     let findings = simplified(&mut plan, engine);
-    let every = step.contact_duration / (FRAMES_IN_CONTACT * step.time_step);
+    let frames = match engine {
+        Engine::Lammps => FRAMES_OF_RANKS,
+        _ => FRAMES_IN_CONTACT,
+    };
+    let every = step.contact_duration / (frames * step.time_step);
     let frame_steps = request.frame_steps.unwrap_or((every as u64).max(1)).max(1);
     let frames = (plan.end / (frame_steps as f64 * step.time_step)).ceil() as u64;
     let task = Task::new(
@@ -131,44 +159,11 @@ fn ready(path: &Path, engine: Engine, request: &DeckRequest) -> Result<Ready, Er
     deck.findings.splice(..0, findings);
     Ok(Ready {
         plan,
+        scene,
         step,
         deck,
         frame_steps,
     })
-}
-
-/// Drops what no other engine has, with findings.
-fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {
-    let mut findings = Vec::new();
-    let (mut spread, mut annuli) = (Vec::new(), 1);
-    for (&(a, b), interaction) in &mut plan.scene.interactions {
-        if interaction.spread.take().is_some() {
-            let [a, b] = [a, b].map(|own| plan.scene.materials[own].clone());
-            spread.push(format!("{a} and {b}"));
-        }
-        if interaction.friction > 0.0 {
-            annuli = annuli.max(interaction.annuli);
-        }
-        interaction.annuli = 1;
-    }
-    if !spread.is_empty() {
-        let message = format!(
-            "{} has one law for all fruit of a class: the spread of the law between fruit ({}) \
-             is left out, all are like the median",
-            engine.title(),
-            spread.join("; ")
-        );
-        findings.push(FindingOutcome::new("engine-spread", message));
-    }
-    if annuli > 1 {
-        let message = format!(
-            "{} follows friction by one spring for a contact area, not by {annuli} annuli: fruit \
-             come off oblique impacts otherwise, normal forces stay",
-            engine.title()
-        );
-        findings.push(FindingOutcome::new("engine-annuli", message));
-    }
-    findings
 }
 
 fn write_deck(deck: &Deck, directory: &Path) -> Result<Vec<PathBuf>, Error> {
@@ -221,17 +216,15 @@ pub fn run_on_engine(
     if own.engine == Engine::Windfall {
         return run_scene(path, request, progress);
     }
-    let ready = ready(path, own.engine, &own.deck)?;
-    let mut plan = ready.plan;
-    let fruit = plan.scene.fruit.len();
+    let mut ready = ready(path, own.engine, &own.deck)?;
     let out = directory_of(path, request);
     if request.start == SceneStart::Resume {
         let problem = "a run on it cannot go on from a checkpoint: begin anew with --restart";
         return Err(wrong(own.engine, problem.to_owned()));
     }
     let steps = ready.frame_steps;
-    let steps_time = steps as f64 * plan.scene.time_step;
-    if let Some(probe) = plan.sensors.probe() {
+    let steps_time = steps as f64 * ready.plan.scene.time_step;
+    if let Some(probe) = ready.plan.sensors.probe() {
         let problem = format!(
             "its frames say where fruit are, not what they feel: the probe \"{}\" of [[sensors]] needs \
              --engine windfall; planes, plates and boxes work here too",
@@ -239,46 +232,140 @@ pub fn run_on_engine(
         );
         return Err(wrong(own.engine, problem));
     }
-    plan.sensors.check_step(steps_time)?;
-    let (mut frames, name) = match &own.frames {
-        Some(file) => {
-            if !file.is_file() {
-                let advice = "--frames takes the frames that the deck of `windfall scene export` \
-                              has written";
-                return Err(Error::absent(file, advice));
-            }
-            protect(file);
-            let frames = Frames::of_file(own.engine, file, fruit, steps);
-            (
-                frames,
-                format!("{} ({})", own.engine.title(), file.display()),
-            )
-        }
-        None => {
-            let program = find_program(own.engine, own.engine_program.as_deref())?;
-            let launch = program.launch(own.ranks.max(1))?;
-            let directory = out.join("engine");
-            write_deck(&ready.deck, &directory)?;
-            let deck = (directory.as_path(), ready.deck.files[0].0.as_str());
-            let frames = Frames::of_run((&program, &launch), deck, (fruit, steps))?;
-            let ranks = match own.ranks {
-                0 | 1 => String::new(),
-                ranks => format!(", {ranks} ranks"),
-            };
-            let name = format!("{} {}{ranks}", own.engine.title(), program.version);
-            (frames, name)
-        }
-    };
+    ready.plan.sensors.check_step(steps_time)?;
     // Between two frames is one step of who follows.
-    plan.scene.time_step *= steps as f64;
+    ready.plan.scene.time_step = steps_time;
+    let (mut mover, engine) = mover_of(path, own, &mut ready, &out)?;
     let moved = Moved {
-        mover: &mut frames,
+        mover: &mut *mover,
         step: ready.step,
-        engine: name,
+        engine,
         findings: ready.deck.findings,
         large_closure: Some(LARGE_CLOSURE),
     };
+    let plan = &ready.plan;
     on_threads(request.threads, || {
-        Ok(run_moved(&plan, moved, &out, request.start, progress)?.outcome)
+        Ok(run_moved(plan, moved, &out, request.start, progress)?.outcome)
     })
+}
+
+/// What moves the fruit, and its name with its version.
+///
+/// * `ready`: with the time between frames as its time step
+/// * `out`: where the results go
+fn mover_of(
+    path: &Path,
+    own: &EngineRequest,
+    ready: &mut Ready,
+    out: &Path,
+) -> Result<(Box<dyn Mover>, String), Error> {
+    let (fruit, steps) = (ready.plan.scene.fruit.len(), ready.frame_steps);
+    let title = own.engine.title();
+    if let Some(file) = &own.frames {
+        if !file.is_file() {
+            let advice = "--frames takes the frames that the deck of `windfall scene export` \
+                          has written";
+            return Err(Error::absent(file, advice));
+        }
+        protect(file);
+        let frames = Frames::of_file(own.engine, file, fruit, steps);
+        let name = format!("{title} ({})", file.display());
+        return Ok((Box::new(frames), name));
+    }
+    if let Some(pulses) = &own.pulses {
+        return pulses_of(own, ready, pulses);
+    }
+    let program = find_program(own.engine, own.engine_program.as_deref())?;
+    let launch = program.launch(own.ranks.max(1))?;
+    let directory = out.join("engine");
+    write_deck(&ready.deck, &directory)?;
+    let ranks = match own.ranks {
+        0 | 1 => String::new(),
+        ranks => format!(", {ranks} ranks"),
+    };
+    let name = format!("{title} {}{ranks}", program.version);
+    if let Some(library) = inside(&program, own, ready)? {
+        let windfall = own.windfall.clone().unwrap_or_default();
+        let task = (path, windfall.as_path(), library.as_path());
+        let running = start_ranks((&program, &launch), task, &directory)?;
+        let counts = (Some(own.ranks.max(1)), steps);
+        let scene = std::mem::take(&mut ready.scene);
+        let pulses = Pulses::new((&directory, Some(running)), &ready.plan, scene, counts)?;
+        return Ok((Box::new(pulses), name));
+    }
+    let deck = (directory.as_path(), ready.deck.files[0].0.as_str());
+    let frames = Frames::of_run((&program, &launch), deck, (fruit, steps))?;
+    Ok((Box::new(frames), name))
+}
+
+/// Pulses that the ranks of an earlier run found.
+fn pulses_of(
+    own: &EngineRequest,
+    ready: &mut Ready,
+    directory: &Path,
+) -> Result<(Box<dyn Mover>, String), Error> {
+    if own.engine != Engine::Lammps {
+        let problem = "its ranks find no pulses (--pulses is for LAMMPS): use --frames";
+        return Err(wrong(own.engine, problem.to_owned()));
+    }
+    if let Some(key) = outside(&ready.plan) {
+        let problem = format!(
+            "pulses say nothing of where fruit are on their way: {key} needs the frames of the deck, with --frames"
+        );
+        return Err(wrong(own.engine, problem));
+    }
+    if !directory.join(part_name(0)).is_file() {
+        let advice = "--pulses takes the directory of a deck in which `windfall scene rank` has run to its end";
+        return Err(Error::absent(directory.join(part_name(0)), advice));
+    }
+    let scene = std::mem::take(&mut ready.scene);
+    let counts = (None, ready.frame_steps);
+    let pulses = Pulses::new((directory, None), &ready.plan, scene, counts)?;
+    let name = format!(
+        "{} {}, {} ranks ({})",
+        own.engine.title(),
+        pulses.engine(),
+        pulses.count(),
+        directory.display()
+    );
+    Ok((Box::new(pulses), name))
+}
+
+/// The key of a scene that asks where fruit are on their way, which only frames tell.
+fn outside(plan: &ScenePlan) -> Option<&'static str> {
+    match (plan.record.frames, plan.sensors.all.is_empty()) {
+        (Some(_), _) => Some("[record]"),
+        (_, false) => Some("[[sensors]]"),
+        _ => None,
+    }
+}
+
+/// The library with which contacts are found inside of the ranks of LAMMPS; none where that cannot be,
+/// with a finding that says why.
+fn inside(
+    program: &Program,
+    own: &EngineRequest,
+    ready: &mut Ready,
+) -> Result<Option<PathBuf>, Error> {
+    let (Engine::Lammps, false, Some(windfall)) = (own.engine, own.engine_frames, &own.windfall)
+    else {
+        return Ok(None);
+    };
+    let given = own.engine_library.as_deref();
+    let found = match outside(&ready.plan) {
+        Some(key) => Err(format!("{key} asks where fruit are on their way")),
+        None => find_library(program, windfall, given),
+    };
+    match found {
+        Ok(library) => Ok(Some(library)),
+        Err(problem) if given.is_some() => Err(unusable(program, &problem)),
+        Err(problem) => {
+            let message = format!(
+                "contacts were found outside of LAMMPS's ranks, which takes longer: {problem}"
+            );
+            let finding = FindingOutcome::new("engine-outside", message);
+            ready.deck.findings.push(finding);
+            Ok(None)
+        }
+    }
 }

@@ -53,7 +53,8 @@ const ARROWS: &[(&str, &str)] = &[
         "plan",
         "tables cards draw files repeat signal statistics mixed distribution numerics",
     ),
-    ("engines", "scene-run files scene contact"),
+    ("lammps", ""),
+    ("engines", "lammps scene-run files scene contact"),
     (
         "report",
         "drop measure campaign cards draw files identify contact signal statistics distribution",

@@ -1,5 +1,7 @@
 //! The account of a scene's energy.
 
+use crate::binary;
+
 /// Energies of contacts that are over, and of what came and left; J.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Account {
@@ -39,8 +41,36 @@ pub struct Energy {
 
 /// Of all energies: what rounding may come to; 1.
 const ROUNDING: f64 = 1e-9;
+binary!(Energy {
+    kinetic,
+    rotational,
+    potential,
+    in_contacts,
+    in_friction,
+    lost_in_contacts,
+    lost_by_friction,
+    lost_by_drag,
+    done_by_walls,
+    brought
+});
 
 impl Energy {
+    /// Both together: of parts of a scene.
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            kinetic: self.kinetic + other.kinetic,
+            rotational: self.rotational + other.rotational,
+            potential: self.potential + other.potential,
+            in_contacts: self.in_contacts + other.in_contacts,
+            in_friction: self.in_friction + other.in_friction,
+            lost_in_contacts: self.lost_in_contacts + other.lost_in_contacts,
+            lost_by_friction: self.lost_by_friction + other.lost_by_friction,
+            lost_by_drag: self.lost_by_drag + other.lost_by_drag,
+            done_by_walls: self.done_by_walls + other.done_by_walls,
+            brought: self.brought + other.brought,
+        }
+    }
+
     /// What the account lacks: zero but for the errors of the time step; J.
     pub fn closure(&self) -> f64 {
         self.kinetic

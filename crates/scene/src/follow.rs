@@ -63,18 +63,7 @@ impl Simulation {
                 keep.push(body);
                 continue;
             };
-            let far = |own: Vector, sink: usize| {
-                let sink = &self.scene.sinks[sink];
-                let off = [0, 1, 2].map(|axis| own[axis].clamp(sink.low[axis], sink.high[axis]));
-                length(subtract(own, off))
-            };
-            let nearest = (0..self.scene.sinks.len())
-                .min_by(|&a, &b| far(state.place, a).total_cmp(&far(state.place, b)));
-            let sink = nearest.ok_or(Error::Value {
-                what: "the number of a fruit that is gone",
-                value: f64::from(fruit) + 1.0,
-                problem: "the engine lost it: there is no sink through which it could leave",
-            })?;
+            let sink = self.sink_of(&state)?;
             self.account.brought -= brought(&self.scene.fruit[fruit as usize], &state, gravity);
             self.taken.push(Leaving { fruit, time, sink });
         }
@@ -83,6 +72,22 @@ impl Simulation {
             self.rebuild();
         }
         Ok(())
+    }
+
+    /// The sink through which a fruit has left that is gone.
+    pub(crate) fn sink_of(&self, last: &FruitState) -> Result<usize, Error> {
+        let far = |own: Vector, sink: usize| {
+            let sink = &self.scene.sinks[sink];
+            let off = [0, 1, 2].map(|axis| own[axis].clamp(sink.low[axis], sink.high[axis]));
+            length(subtract(own, off))
+        };
+        let nearest = (0..self.scene.sinks.len())
+            .min_by(|&a, &b| far(last.place, a).total_cmp(&far(last.place, b)));
+        nearest.ok_or(Error::Value {
+            what: "the number of a fruit that is gone",
+            value: f64::from(last.fruit) + 1.0,
+            problem: "the engine lost it: there is no sink through which it could leave",
+        })
     }
 
     /// Adds fruit that are new in a frame.
@@ -144,7 +149,7 @@ impl Simulation {
 }
 
 /// Energy that a fruit brings into a scene; J.
-fn brought(fruit: &Fruit, state: &FruitState, gravity: Vector) -> f64 {
+pub(crate) fn brought(fruit: &Fruit, state: &FruitState, gravity: Vector) -> f64 {
     0.5 * fruit.mass * dot(state.velocity, state.velocity)
         + 0.5 * fruit.inertia() * dot(state.spin, state.spin)
         - fruit.mass * dot(gravity, state.place)

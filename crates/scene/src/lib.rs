@@ -24,5 +24,6 @@ pub mod reach;
 pub mod room;
 pub mod scene;
 pub mod shape;
+pub mod share;
 pub mod state;
 pub mod vector;

@@ -46,8 +46,8 @@ type Parameters = [f64; LARGEST_PARAMETERS];
 
 /// A contact of two fruit, as the one with the lower number sees it.
 #[derive(Clone, Debug)]
-struct PairState {
-    fruit: [u32; 2],
+pub(crate) struct PairState {
+    pub fruit: [u32; 2],
     law: Parameters,
     parcel: Parcel,
 }
@@ -64,8 +64,8 @@ struct ClumpWallState {
 
 /// A contact with a part of a wall.
 #[derive(Clone, Debug)]
-struct WallContactState {
-    facet: u32,
+pub(crate) struct WallContactState {
+    pub facet: u32,
     law: Parameters,
     parcel: Parcel,
     meeting: [[f64; 4]; 4],
@@ -168,7 +168,7 @@ fn law_of(kind: LawKind, own: &Parameters) -> IoResult<Law> {
 }
 
 /// The state of a scene, written from the scene itself: as [`State`] reads it.
-pub struct Saved<'a>(&'a Simulation);
+pub struct Saved<'a>(pub(crate) &'a Simulation);
 
 impl Saved<'_> {
     /// Writes it.
@@ -207,7 +207,7 @@ impl Saved<'_> {
     }
 
     /// Contacts of two fruit that are no clumps, by their numbers.
-    fn pairs(&self) -> impl ExactSizeIterator<Item = PairState> + '_ {
+    pub(crate) fn pairs(&self) -> impl ExactSizeIterator<Item = PairState> + '_ {
         let own = self.0;
         let number = |body: u32| own.bodies.fruit[body as usize];
         let mut all = Vec::with_capacity(own.pair_contacts());
@@ -293,14 +293,14 @@ impl Simulation {
     }
 
     /// Fruit of a state, by number, in place of those that are there.
-    fn enter_all(&mut self, fruit: &[FruitState]) {
+    pub(crate) fn enter_all(&mut self, fruit: &[FruitState]) {
         self.bodies = Bodies::default();
         self.clumps = Vec::new();
         fruit.iter().for_each(|own| self.enter(own));
     }
 
     /// The body of each fruit that is one; of a clump any of its bodies.
-    fn bodies_by_fruit(&self) -> Vec<u32> {
+    pub(crate) fn bodies_by_fruit(&self) -> Vec<u32> {
         let mut body_of = vec![0; self.released];
         for (body, &fruit) in self.bodies.fruit.iter().enumerate() {
             body_of[fruit as usize] = body as u32;
@@ -333,27 +333,26 @@ impl Simulation {
         let body_of = self.bodies_by_fruit();
         for (fruit, own) in &state.walls {
             let body = body_of[state.fruit[*fruit as usize].fruit as usize] as usize;
-            let kind = self.surfaces[self.interaction_with(body, own.facet)]
-                .law
-                .kind();
-            let law = law_of(kind, &own.law).map_err(unfit)?;
-            self.bodies.lifted[body].push(lifted(own, law));
+            self.lay_at(body, own).map_err(unfit)?;
         }
         // Nothing is in a list: there is none.
         self.renew();
         self.rebuilds = state.rebuilds;
+        self.settle_pairs(&state.pairs).map_err(unfit)
+    }
+
+    /// Contacts of fruit that are in the scene, into a list without contacts.
+    pub(crate) fn settle_pairs(&mut self, pairs: &[PairState]) -> IoResult<()> {
         let body_of = self.bodies_by_fruit();
-        let mut carried = Vec::with_capacity(state.pairs.len());
-        let mut laws = Vec::with_capacity(state.pairs.len());
-        for (number, own) in state.pairs.iter().enumerate() {
+        let mut carried = Vec::with_capacity(pairs.len());
+        let mut laws = Vec::with_capacity(pairs.len());
+        for (number, own) in pairs.iter().enumerate() {
             let [first, second] = own.fruit.map(|fruit| body_of[fruit as usize]);
             let material = |body: u32| self.bodies.material[body as usize] as usize;
             let kind = self.kind_between(material(first), material(second));
-            let law = law_of(kind, &own.law).map_err(unfit)?;
-            laws.push(law);
+            laws.push(law_of(kind, &own.law)?);
             carried.extend(self.carried((first, second), [0, 0, number]));
         }
-        let pairs = &state.pairs;
         self.settle(carried, ReadPairs { laws, pairs });
         Ok(())
     }
@@ -385,6 +384,16 @@ impl Simulation {
         Ok(contacts)
     }
 
+    /// A contact with a wall to a body that has no list yet.
+    pub(crate) fn lay_at(&mut self, body: usize, own: &WallContactState) -> IoResult<()> {
+        let kind = self.surfaces[self.interaction_with(body, own.facet)]
+            .law
+            .kind();
+        let law = law_of(kind, &own.law)?;
+        self.bodies.lifted[body].push(lifted(own, law));
+        Ok(())
+    }
+
     fn kind_between(&self, material: usize, other: usize) -> LawKind {
         let number = self.numbers[material * self.scene.materials.len() + other];
         self.surfaces[number].law.kind()
@@ -414,7 +423,7 @@ fn pair_state(fruit: [u32; 2], law: &Law, parcel: Parcel) -> PairState {
     }
 }
 
-fn wall_state(own: &Lifted) -> WallContactState {
+pub(crate) fn wall_state(own: &Lifted) -> WallContactState {
     WallContactState {
         facet: own.facet,
         law: parameters(&own.law),

@@ -15,4 +15,5 @@ mod many_fruit;
 mod mesh;
 mod oblique_impacts;
 mod resume;
+mod share;
 mod single_impacts;

@@ -14,7 +14,7 @@ use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::plus_scaled;
 
 /// Two apples that collide above a floor and fall on it, and one that comes later.
-fn scene(time_step: f64) -> Scene {
+pub(crate) fn scene(time_step: f64) -> Scene {
     let law = parse_law("kuwabara-kono(k=753599, c=1524)").unwrap();
     let contact = Interaction {
         friction: 0.3,

@@ -74,7 +74,7 @@ fn head(task: &Task) -> String {
          {FRAMES}`\n# makes contacts, fruit and bruises of them.\n\
          units si\natom_style sphere\natom_modify map hash sort 1000 {}\nboundary m m m\n\
          newton off\ncomm_modify vel yes cutoff {reach}\nprocessors {processors}\n{space}\n\
-         fix fruit all property/atom i_fruit\nvariable id atom id\nset group all i_fruit v_id\n\
+         fix fruit all property/atom i_fruit ghost yes\nvariable id atom id\nset group all i_fruit v_id\n\
          group old empty\ngroup new empty\n",
         comment_text(task.title),
         task.frame_steps,

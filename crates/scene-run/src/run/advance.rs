@@ -45,6 +45,11 @@ pub trait Mover: Send {
         (0..steps).try_for_each(|_| self.step(simulation).map(|_| ()))
     }
 
+    /// Contacts that are still there at the end, as if they ended then.
+    fn lasting(&mut self, simulation: &Simulation) -> Vec<Event> {
+        simulation.lasting()
+    }
+
     /// Its own time steps in one.
     fn steps(&self) -> u64;
 

@@ -1,7 +1,7 @@
 //! A run of a scene: checkpoints, frames, tables, results.
 
 pub mod advance;
-pub(crate) mod checkpoint;
+pub mod checkpoint;
 pub mod frame_format;
 pub(crate) mod frames;
 mod growing;

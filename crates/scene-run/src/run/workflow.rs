@@ -138,7 +138,7 @@ pub fn run_moved(
     let mut run = SceneRun::begin(plan, out, start, moved.mover)?;
     run.run_to_end(moved.mover, progress)?;
     let last = moved.mover.step(&mut run.simulation)?;
-    for event in run.simulation.lasting() {
+    for event in moved.mover.lasting(&run.simulation) {
         run.count(&event).map_err(|error| run.told(error))?;
     }
     let written = write_results(plan, &mut run, (&moved, &last), out);

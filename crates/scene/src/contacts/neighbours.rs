@@ -284,12 +284,15 @@ impl Cells {
 impl PairTable {
     /// Every pair closer than its radii and the skin.
     ///
+    /// * `foreign`: fruit that another rank follows, by number; a pair is with the one that has
+    ///   the lower number
     /// * `interaction`: number of the interaction of two materials
     pub(crate) fn build(
         bodies: &Bodies,
         cells: &Cells,
         skin: f64,
         interactions: usize,
+        foreign: &[bool],
         interaction: impl Fn(u32, u32) -> usize + Sync,
     ) -> Self {
         let count = bodies.len();
@@ -306,6 +309,10 @@ impl PairTable {
                         let reach = a[3] + b[3] + skin;
                         let (x, y, z) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
                         if x * x + y * y + z * z < reach * reach {
+                            let lower = bodies.fruit[first].min(bodies.fruit[second]);
+                            if foreign.get(lower as usize).is_some_and(|own| *own) {
+                                return;
+                            }
                             let clumps = (bodies.clump[first], bodies.clump[second]);
                             if clumps != (NONE, NONE) {
                                 if clumps.0 != clumps.1 {

@@ -67,6 +67,8 @@ pub(crate) struct Gather<'a> {
     /// Of contacts of clumps on each body, if there are clumps.
     pub clump_loads: &'a [Load],
     pub listed: &'a [Four],
+    /// Fruit that another rank follows, by number: see `Simulation`.
+    pub foreign: &'a [bool],
     pub with_energy: bool,
 }
 
@@ -101,7 +103,7 @@ impl Gather<'_> {
         let step = now.clock.step;
         if let Some(air) = self.scene.air {
             for own in 0..block.loads.len() {
-                if block.motion[own][3] == PART_OF_CLUMP {
+                if block.motion[own][3] == PART_OF_CLUMP || self.is_foreign(block.start + own) {
                     continue;
                 }
                 let (m, radius) = (&block.motion[own], block.place[own][3]);
@@ -116,6 +118,10 @@ impl Gather<'_> {
         }
         if self.with_energy {
             self.energies(&block, step, &mut sums);
+        }
+        // Who follows others is told where they go.
+        if !self.foreign.is_empty() {
+            return (outcome, sums);
         }
         let bodies = block.place.len();
         let furthest = with_four_lanes(Move {
@@ -136,6 +142,12 @@ impl Gather<'_> {
                 .get_or_insert_with(|| self.too_fast(&block, now));
         }
         (outcome, sums)
+    }
+
+    /// Whether another rank follows the fruit of a body.
+    fn is_foreign(&self, body: usize) -> bool {
+        let foreign = self.foreign.get(self.bodies.0[body] as usize);
+        foreign.is_some_and(|own| *own)
     }
 
     /// What pairs of other blocks do to the bodies of the block.
@@ -212,7 +224,7 @@ impl Gather<'_> {
     fn energies(&self, block: &BlockBodies, step: f64, sums: &mut Sums) {
         for (own, load) in block.loads.iter().enumerate() {
             let (m, HalfLine([x, y, z, _])) = (&block.motion[own], block.place[own]);
-            if m[3] == PART_OF_CLUMP {
+            if m[3] == PART_OF_CLUMP || self.is_foreign(block.start + own) {
                 continue;
             }
             let half = |axis: usize, by: f64| m[axis] + 0.5 * step * load[axis] * by;

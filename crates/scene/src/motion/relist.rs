@@ -100,6 +100,7 @@ impl Simulation {
             &cells,
             self.skin,
             self.surfaces.len(),
+            &self.foreign,
             |a, b| numbers[a as usize * materials + b as usize],
         );
         let old = std::mem::replace(&mut self.table, table);
@@ -308,7 +309,12 @@ impl Simulation {
         let (walls, skin) = (&self.walls, self.skin);
         let places = self.bodies.place.par_iter().zip(&self.bodies.lifted);
         let near: Vec<Vec<u32>> = places
-            .map(|(&HalfLine([x, y, z, radius]), lifted)| {
+            .zip(&self.bodies.fruit)
+            .map(|((&HalfLine([x, y, z, radius]), lifted), fruit)| {
+                // Another rank follows its contacts.
+                if self.foreign.get(*fruit as usize).is_some_and(|own| *own) {
+                    return Vec::new();
+                }
                 let mut own: Vec<u32> = lifted.iter().map(|own| own.facet).collect();
                 walls.find_near([x, y, z], radius + skin, &mut own);
                 own.sort_unstable();

@@ -68,6 +68,8 @@ pub struct Simulation {
     pub(crate) taken: Vec<Leaving>,
     pub(crate) account: Account,
     pub(crate) rebuilds: u64,
+    /// Fruit that another rank follows, by number; empty where there is one rank.
+    pub(crate) foreign: Vec<bool>,
 }
 
 /// A fruit that left.
@@ -162,6 +164,7 @@ impl Simulation {
             taken: Vec::new(),
             account: Account::default(),
             rebuilds: 0,
+            foreign: Vec::new(),
         })
     }
 

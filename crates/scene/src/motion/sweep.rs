@@ -124,6 +124,7 @@ impl Simulation {
             clumps: (&self.bodies.clump, &self.bodies.offset),
             clump_loads: &self.clump_loads,
             listed: &self.listed,
+            foreign: &self.foreign,
             with_energy,
         };
         // The first body that stays where it is in this wave.

@@ -4,6 +4,7 @@ use crate::args::format::Format;
 use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
+use windfall_engines::ranks::follow::RankRequest;
 use windfall_engines::run::{DeckRequest, EngineRequest};
 use windfall_scene_run::run::workflow::SceneRequest;
 use windfall_scene_run::study::run::StudyRequest;
@@ -19,6 +20,9 @@ pub enum SceneCommand {
     Picture(ScenePictureArguments),
     /// Write the frames of a scene that has run for ParaView
     Vtk(SceneVtkArguments),
+    /// One rank of LAMMPS: runs the deck of a scene, and writes the pulses that it finds
+    #[command(hide = true)]
+    Rank(RankRequest),
     /// Write a scene as a complete deck for LAMMPS or LIGGGHTS, or its contacts for others
     Export(SceneExportArguments),
 }

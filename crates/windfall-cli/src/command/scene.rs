@@ -11,7 +11,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 use windfall_engines::contacts::export_contacts;
 use windfall_engines::parameters::Other;
-use windfall_engines::run::{export_deck, run_on_engine};
+use windfall_engines::ranks::follow::run_rank;
+use windfall_engines::run::{EngineRequest, export_deck, run_on_engine};
 use windfall_engines::text::{text_of_contacts, text_of_deck};
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::run::advance::SceneStart;
@@ -29,6 +30,7 @@ pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
         SceneCommand::Picture(arguments) => scene_view::picture(arguments),
         SceneCommand::Vtk(arguments) => scene_view::vtk(arguments),
         SceneCommand::Export(arguments) => export(arguments),
+        SceneCommand::Rank(request) => Ok(run_rank(request)?),
     }
 }
 
@@ -74,13 +76,17 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         },
         ..arguments.request.clone()
     };
+    let engine = EngineRequest {
+        windfall: std::env::current_exe().ok(),
+        ..arguments.engine.clone()
+    };
     let interrupted = interruption();
     let outcome = with_bar(|shown| {
         let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => shown(done, all),
         };
-        run_on_engine(&arguments.file, &request, &arguments.engine, &progress)
+        run_on_engine(&arguments.file, &request, &engine, &progress)
     })?;
     show(arguments.format, &outcome, text_of_scene, csv_of_scene)
 }

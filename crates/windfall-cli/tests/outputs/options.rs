@@ -420,6 +420,12 @@ pub const READ: &[(&str, &str)] = &[
     ("simulate drop", "--laws"),
     ("scene run", "file"),
     ("scene run", "--engine-program"),
+    ("scene run", "--engine-library"),
+    ("scene run", "--pulses"),
+    // Ranks of one run fill the directory of its deck together.
+    ("scene rank", "file"),
+    ("scene rank", "--deck"),
+    ("scene rank", "--library"),
     ("scene run", "--frames"),
     ("scene study", "file"),
     ("scene picture", "run"),

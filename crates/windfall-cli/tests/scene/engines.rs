@@ -15,7 +15,7 @@ fn with_path(arguments: &[&str], directory: &Path, path: &str) -> (bool, String,
 
 /// Fruit that come one by one, each on its own place, and two pairs that collide in the air
 /// where two ranks meet; a floor, a pad that vibrates, a tilted plate, a tube, a sink.
-const IMPACTS: &str = r#"format = 1
+pub(super) const IMPACTS: &str = r#"format = 1
 materials = ["apple", "steel", "foam"]
 [scene]
 title = "Impacts, one by one"
@@ -97,9 +97,9 @@ high = [1.4, 0.3, 0.1]
 "#;
 
 /// What a fruit went through: partner, time, impact speed, peak force, absorbed energy, depth.
-type Contact = (String, [f64; 5]);
+pub(super) type Contact = (String, [f64; 5]);
 
-fn contacts(directory: &Path, out: &str) -> BTreeMap<String, Vec<Contact>> {
+pub(super) fn contacts(directory: &Path, out: &str) -> BTreeMap<String, Vec<Contact>> {
     let text = std::fs::read_to_string(directory.join(out).join("events.csv")).unwrap();
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -130,7 +130,7 @@ fn contacts(directory: &Path, out: &str) -> BTreeMap<String, Vec<Contact>> {
 }
 
 /// Each fruit's contacts are the same within a part.
-fn same(
+pub(super) fn same(
     found: &BTreeMap<String, Vec<Contact>>,
     wanted: &BTreeMap<String, Vec<Contact>>,
     part: f64,
@@ -160,13 +160,13 @@ fn same(
     }
 }
 
-fn scene_of(text: &str) -> tempfile::TempDir {
+pub(super) fn scene_of(text: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("scene.toml"), text).unwrap();
     folder
 }
 
-fn run(folder: &Path, out: &str, arguments: &[&str]) -> serde_json::Value {
+pub(super) fn run(folder: &Path, out: &str, arguments: &[&str]) -> serde_json::Value {
     let mut all = vec![
         "scene",
         "run",
@@ -352,7 +352,11 @@ fn an_exported_deck_runs_by_itself_and_its_frames_are_read() {
     let frames = deck.join("frames.bin");
     let read = ["--engine", "lammps", "--frames", frames.to_str().unwrap()];
     run(folder.path(), "read", &read);
-    run(folder.path(), "run", &["--engine", "lammps"]);
+    run(
+        folder.path(),
+        "run",
+        &["--engine", "lammps", "--engine-frames"],
+    );
     same(
         &contacts(folder.path(), "read"),
         &contacts(folder.path(), "run"),
@@ -364,7 +368,7 @@ fn an_exported_deck_runs_by_itself_and_its_frames_are_read() {
     std::fs::write(folder.path().join("short.bin"), &whole[..whole.len() / 2]).unwrap();
     for (name, steps, word) in [
         ("short.bin", None, "cut short"),
-        ("scene.lammps/frames.bin", Some("3"), "another deck"),
+        ("scene.lammps/frames.bin", Some("7"), "another deck"),
         ("scene.toml", None, "no dump"),
         ("none.bin", None, "no such file"),
     ] {

@@ -4,6 +4,7 @@
 #[cfg(unix)]
 mod engines;
 mod moves;
+mod ranks;
 mod run;
 mod start;
 mod study;

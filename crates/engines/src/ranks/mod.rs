@@ -1,0 +1,6 @@
+//! Contacts found inside of the ranks of LAMMPS, where its atoms are, and put together afterwards.
+
+pub mod follow;
+pub(crate) mod library;
+pub(crate) mod merge;
+pub(crate) mod part;

@@ -1,0 +1,381 @@
+//! What a rank found, as a file: it grows with the loads that ended, not with the steps.
+//!
+//! The file begins with `MAGIC`, the version of its shape, that of windfall and a [`Head`];
+//! each record follows behind its length in bytes.
+
+use std::fs::File;
+use std::io::{BufWriter, Read, Result as IoResult, Write};
+use std::path::{Path, PathBuf};
+use windfall_files::error::Error;
+use windfall_files::provenance::VERSION;
+use windfall_files::write_file::check_target;
+use windfall_files::written::{check_plain, list_written_as};
+use windfall_scene::binary;
+use windfall_scene::binary::{Binary, no_value};
+use windfall_scene::energy::Energy;
+use windfall_scene::event::Event;
+use windfall_scene::motion::simulation::{FruitState, Leaving};
+use windfall_scene_run::file::read::ScenePlan;
+use windfall_scene_run::file_error::access;
+use windfall_scene_run::run::checkpoint::{Parts, parts_of};
+
+/// How a part begins.
+const MAGIC: [u8; 8] = *b"WFPULSE\n";
+/// Version of its shape.
+const SHAPE: u32 = 1;
+/// Bytes that are read at a time.
+const BLOCK: usize = 1 << 18;
+
+/// Whose part it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Head {
+    /// Its number, and how many there are.
+    pub rank: usize,
+    pub ranks: usize,
+    /// Version of LAMMPS as year, month and day.
+    pub engine: u32,
+    /// Steps between frames.
+    pub frame_steps: u64,
+    /// Digests of the scene; of the first rank alone.
+    pub scene: Parts,
+}
+
+/// What a rank found in a frame. Frames without one found nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Record {
+    pub frame: u64,
+    /// Loads that ended.
+    pub events: Vec<Event>,
+    pub left: Vec<Leaving>,
+    /// In the first frame and in the last.
+    pub energy: Option<Energy>,
+    /// In the last frame.
+    pub end: Option<End>,
+}
+
+/// What is there at the end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct End {
+    /// Loads that last.
+    pub lasting: Vec<Event>,
+    /// The rank's own fruit.
+    pub fruit: Vec<FruitState>,
+}
+
+binary!(Head {
+    rank,
+    ranks,
+    engine,
+    frame_steps,
+    scene
+});
+binary!(Record {
+    frame,
+    events,
+    left,
+    energy,
+    end
+});
+binary!(End { lasting, fruit });
+
+/// What pulses depend on. A scene without a title is named after its file, which may have moved.
+pub(crate) fn scene_of(plan: &ScenePlan) -> Parts {
+    let mut parts = parts_of(plan);
+    parts.retain(|(name, _)| name != "the title");
+    parts
+}
+
+/// Name of a part.
+pub(crate) fn part_name(rank: usize) -> String {
+    format!("pulses.{rank}.bin")
+}
+
+/// Where a part grows until all are whole.
+pub(crate) fn partial_name(rank: usize) -> String {
+    format!("{}.partial", part_name(rank))
+}
+
+/// Removes the parts of an earlier run.
+///
+/// # Errors
+/// A file of that name is of somebody else, or cannot be removed.
+pub(crate) fn remove_parts(directory: &Path) -> Result<(), Error> {
+    for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let rank = name.to_str().and_then(|own| {
+            let own = own.strip_prefix("pulses.")?;
+            let own = own.strip_suffix(".partial").unwrap_or(own);
+            own.strip_suffix(".bin")?.parse().ok()
+        });
+        let Some(rank) = rank else {
+            continue;
+        };
+        let path = entry.path();
+        check_target(&directory.join(part_name(rank)))?;
+        check_plain(&path)?;
+        std::fs::remove_file(&path).map_err(access(&path, "replace"))?;
+    }
+    Ok(())
+}
+
+/// Gives the parts of all ranks their names.
+///
+/// # Errors
+/// They cannot be renamed.
+pub(crate) fn name_parts(directory: &Path, ranks: usize) -> Result<(), Error> {
+    for rank in 0..ranks {
+        let [part, partial] = [part_name(rank), partial_name(rank)];
+        let [part, partial] = [part, partial].map(|name| directory.join(name));
+        list_written_as(&part, &partial)?;
+        std::fs::rename(&partial, &part).map_err(access(&part, "write"))?;
+    }
+    Ok(())
+}
+
+/// A part that grows.
+pub(crate) struct PartWriter {
+    path: PathBuf,
+    to: BufWriter<File>,
+}
+
+impl PartWriter {
+    /// A part without records.
+    pub fn create(directory: &Path, head: &Head) -> Result<Self, Error> {
+        let path = directory.join(partial_name(head.rank));
+        check_target(&directory.join(part_name(head.rank)))?;
+        check_plain(&path)?;
+        let file = File::create(&path).map_err(access(&path, "write"))?;
+        let mut own = Self {
+            path,
+            to: BufWriter::new(file),
+        };
+        let mut bytes = Vec::new();
+        let written = begin(head, &mut bytes);
+        own.failed(written)?;
+        own.put(&bytes)?;
+        own.flush()?;
+        Ok(own)
+    }
+
+    fn failed(&self, done: IoResult<()>) -> Result<(), Error> {
+        done.map_err(access(&self.path, "write"))
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let done = (bytes.len() as u64)
+            .write(&mut self.to)
+            .and_then(|()| self.to.write_all(bytes));
+        self.failed(done)
+    }
+
+    /// Adds a record.
+    pub fn write(&mut self, record: &Record) -> Result<(), Error> {
+        let mut bytes = Vec::new();
+        let done = record.write(&mut bytes);
+        self.failed(done)?;
+        self.put(&bytes)
+    }
+
+    /// Lets readers see all so far.
+    pub fn flush(&mut self) -> Result<(), Error> {
+        let done = self.to.flush();
+        self.failed(done)
+    }
+
+    /// Brings all to the disk.
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.flush()?;
+        let done = self.to.get_ref().sync_all();
+        self.failed(done)
+    }
+}
+
+fn begin(head: &Head, to: &mut dyn Write) -> IoResult<()> {
+    MAGIC.write(to)?;
+    SHAPE.write(to)?;
+    VERSION.to_owned().write(to)?;
+    head.write(to)
+}
+
+/// A part that is read, while it grows or later.
+pub(crate) struct PartReader {
+    file: File,
+    /// Bytes that were read, and how many of them are used.
+    bytes: Vec<u8>,
+    used: usize,
+    /// Whose part it is.
+    pub head: Head,
+}
+
+impl PartReader {
+    /// Opens a part; none where it is not begun yet.
+    ///
+    /// # Errors
+    /// It is none, or one of another windfall.
+    pub fn open(path: &Path) -> Result<Option<Self>, String> {
+        let Ok(file) = File::open(path) else {
+            return Ok(None);
+        };
+        let mut own = Self {
+            file,
+            bytes: Vec::new(),
+            used: 0,
+            head: Head::default(),
+        };
+        let Some(range) = own.next_range()? else {
+            return Ok(None);
+        };
+        own.head = head_of(&mut &own.bytes[range])?;
+        Ok(Some(own))
+    }
+
+    /// The next record; none where there is none yet.
+    ///
+    /// # Errors
+    /// What does not look like a record.
+    pub fn next_record(&mut self) -> Result<Option<Record>, String> {
+        let Some(range) = self.next_range()? else {
+            return Ok(None);
+        };
+        let mut from = &self.bytes[range];
+        let record = Record::read(&mut from).map_err(|error| format!("it is damaged: {error}"))?;
+        match from.is_empty() {
+            true => Ok(Some(record)),
+            false => Err("it is damaged: a record is longer than it says".to_owned()),
+        }
+    }
+
+    /// Where the next record stands among the bytes that were read.
+    fn next_range(&mut self) -> Result<Option<std::ops::Range<usize>>, String> {
+        loop {
+            let left = &self.bytes[self.used..];
+            let mut wanted = 8;
+            if let Some((length, _)) = left.split_first_chunk::<8>() {
+                let length = u64::from_le_bytes(*length);
+                let all = usize::try_from(length)
+                    .ok()
+                    .and_then(|own| own.checked_add(8));
+                let room = self.file.metadata().map_or(u64::MAX, |own| own.len());
+                wanted = all.ok_or("it is damaged: a record has no length")?;
+                if left.len() >= wanted {
+                    let start = self.used + 8;
+                    self.used += wanted;
+                    return Ok(Some(start..self.used));
+                }
+                // A damaged length asks for no memory.
+                if length > room {
+                    return Ok(None);
+                }
+            }
+            self.bytes.drain(..self.used);
+            self.used = 0;
+            let before = self.bytes.len();
+            let most = (wanted - before).max(BLOCK) as u64;
+            let read = (&self.file).take(most).read_to_end(&mut self.bytes);
+            match read {
+                Ok(0) => return Ok(None),
+                Ok(_) => {}
+                Err(error) => return Err(format!("cannot read: {error}")),
+            }
+        }
+    }
+}
+
+fn head_of(from: &mut &[u8]) -> Result<Head, String> {
+    let unread = |error: std::io::Error| format!("it holds no pulses of a rank ({error})");
+    let mut begin = || -> IoResult<(u32, String)> {
+        if <[u8; 8]>::read(from)? != MAGIC {
+            return Err(no_value("pulses"));
+        }
+        Ok((u32::read(from)?, String::read(from)?))
+    };
+    let (shape, version) = begin().map_err(unread)?;
+    if shape != SHAPE || version != VERSION {
+        return Err(format!(
+            "it was written by windfall {version}, and this is {VERSION}: the ranks and who puts \
+             their pulses together must be of one version"
+        ));
+    }
+    Head::read(from).map_err(unread)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_told_with_the_name_of_the_part() {
+        let file = File::options().write(true).open("/dev/full").unwrap();
+        let mut writer = PartWriter {
+            path: PathBuf::from("deck/pulses.3.bin.partial"),
+            to: BufWriter::new(file),
+        };
+        writer.write(&Record::default()).unwrap();
+        let problem = writer.flush().unwrap_err();
+        let cause = std::error::Error::source(&problem).unwrap().to_string();
+        assert!(problem.to_string().contains("pulses.3.bin"), "{problem}");
+        assert!(cause.contains("No space left"), "{cause}");
+    }
+
+    #[test]
+    fn a_part_is_read_while_it_grows_and_damage_is_told() {
+        let name = format!("windfall-part-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir(&folder).unwrap();
+        let head = Head {
+            rank: 1,
+            ranks: 2,
+            engine: 20_220_106,
+            frame_steps: 3,
+            scene: vec![("fruit".to_owned(), "ab".to_owned())],
+        };
+        let path = folder.join(partial_name(1));
+        assert!(PartReader::open(&path).unwrap().is_none());
+        let mut writer = PartWriter::create(&folder, &head).unwrap();
+        let mut reader = PartReader::open(&path).unwrap().unwrap();
+        assert_eq!(reader.head, head);
+        assert_eq!(reader.next_record().unwrap(), None);
+        let record = |frame: u64| Record {
+            frame,
+            left: vec![
+                Leaving {
+                    fruit: 4,
+                    time: 0.5,
+                    sink: 0
+                };
+                frame as usize
+            ],
+            ..Record::default()
+        };
+        for frame in 1..4 {
+            writer.write(&record(frame)).unwrap();
+        }
+        writer.flush().unwrap();
+        for frame in 1..4 {
+            assert_eq!(reader.next_record().unwrap(), Some(record(frame)));
+        }
+        assert_eq!(reader.next_record().unwrap(), None);
+        writer.write(&record(4)).unwrap();
+        writer.finish().unwrap();
+        assert_eq!(reader.next_record().unwrap(), Some(record(4)));
+        // Cut anywhere it is a part that is not whole yet; damaged at its beginning it is none.
+        let whole = std::fs::read(&path).unwrap();
+        for end in 0..whole.len() {
+            std::fs::write(&path, &whole[..end]).unwrap();
+            let Some(mut reader) = PartReader::open(&path).unwrap() else {
+                continue;
+            };
+            let mut read = 0;
+            while reader.next_record().unwrap().is_some() {
+                read += 1;
+            }
+            assert!(read < 4);
+        }
+        let mut other = whole.clone();
+        other[8] = b'X';
+        std::fs::write(&path, &other).unwrap();
+        let problem = PartReader::open(&path).err().unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(problem.contains("no pulses"), "{problem}");
+    }
+}
