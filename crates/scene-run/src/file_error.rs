@@ -53,13 +53,12 @@ impl Fault for SceneFileError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SceneFileError {
     /// Nothing was recorded.
-    #[error(
-        "{path}: no frames were recorded; add to the scene: [record] frames = \"20 ms\", and run it \
-         again", path = path.display()
-    )]
+    #[error("{path}: {problem}", path = path.display())]
     FramesAbsent {
         /// The directory.
         path: PathBuf,
+        /// Why, and what to do.
+        problem: &'static str,
     },
     /// A file that is no file of frames, or a damaged one.
     #[error(

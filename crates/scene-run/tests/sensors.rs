@@ -500,7 +500,7 @@ fn rejects_sensors_that_cannot_be_with_their_line() {
         ),
         (
             "name = \"flat\"\nplate = { corner = [0, 0, 0], edges = [[1, 0, 0], [2, 0, 0]] }",
-            &["parallel", "flat"],
+            &["parallel", "plate edges", "[[1, 0, 0], [2, 0, 0]]"],
         ),
         (
             "name = \"flat\"\nplane = { point = [0, 0, 0], normal = [0, 0, 0] }",
@@ -609,4 +609,27 @@ fn closed_form_two_equal_balls_share_the_velocity_change() {
         (impacts[0]["fruit"].as_str(), struck),
         ("1", ("fruit", "2"))
     );
+}
+
+#[test]
+fn a_probe_has_no_part_in_the_share_of_bruised_fruit() {
+    let other = drop("[-0.1, 0, 0]", "[2, 0, 0]").replace("\"ball\"", "\"other\"");
+    let probe = "[[sensors]]\nname = \"ball\"\nprobe = \"ball\"\ninterval = \"1 ms\"\n";
+    let bruise = "[bruise]\npredictor = \"absorbed energy\"\nthreshold = \"1 mJ\"\nsusceptibility = \"3000 mm^3/J\"\n\
+                  limits = [\"1 mm^3\"]\n";
+    let balls = drop("[0, 0, 0]", "[0, 0, 0]") + &other + bruise;
+    for (sensor, fruit) in [("", 2), (probe, 1)] {
+        let lab = Lab::new(
+            "gravity = \"0 m/s^2\"\nend = \"40 ms\"\ntime_step = \"20 us\"",
+            &(balls.clone() + sensor),
+        );
+        let bruise = lab.run().bruise.unwrap();
+        // Both were struck as hard.
+        assert_eq!((bruise.fruit, bruise.places[0].bruises), (fruit, fruit));
+        assert!((bruise.limits[0].share - 1.0).abs() < 1e-12);
+        let column = "largest_bruise_mm3";
+        let rows = lab.table("fruit.csv");
+        let bruised = rows.iter().filter(|own| number(own, column) > 0.0);
+        assert_eq!(bruised.count(), fruit);
+    }
 }

@@ -58,7 +58,7 @@ pub fn mesh_of(
     let name = file.file.get_ref();
     let refused =
         |key: &'static str, problem: String| table.refused(&file.file.span(), key, name, problem);
-    let unit = unit_of(table, mesh)?;
+    let (unit, unit_told) = unit_of(table, mesh)?;
     let turn = match &file.turn {
         Some(turn) => turn_of(table, turn)?,
         None => turn_about([0.0, 0.0, 1.0], 0.0),
@@ -76,7 +76,7 @@ pub fn mesh_of(
             "in this unit it is {} m across: is `unit` right?",
             short(size)
         );
-        return Err(refused("mesh unit", problem));
+        return Err(table.refused(&unit_told.span(), "mesh unit", unit_told.get_ref(), problem));
     }
     let mut surface = welded(&triangles);
     if surface.triangles.is_empty() {
@@ -103,8 +103,11 @@ pub fn mesh_of(
     })
 }
 
-/// Metres in the unit of an STL file.
-fn unit_of(table: &Section, mesh: &Spanned<MeshFile>) -> Result<f64, Error> {
+/// Metres in the unit of an STL file, and what stands there.
+fn unit_of<'a>(
+    table: &Section,
+    mesh: &'a Spanned<MeshFile>,
+) -> Result<(f64, &'a Spanned<String>), Error> {
     let Some(unit) = &mesh.get_ref().unit else {
         let meaning = "the unit of length of its coordinates, which STL files do not say";
         let at = mesh.span();
@@ -116,7 +119,9 @@ fn unit_of(table: &Section, mesh: &Spanned<MeshFile>) -> Result<f64, Error> {
     };
     let own = unit.get_ref();
     let metres = parse_as(&format!("1 {own}"), "m");
-    metres.map_err(|error| table.refused(&unit.span(), "mesh unit", own, error.to_string()))
+    let metres =
+        metres.map_err(|error| table.refused(&unit.span(), "mesh unit", own, error.to_string()));
+    Ok((metres?, unit))
 }
 
 fn turn_of(table: &Section, turn: &Spanned<TurnFile>) -> Result<[f64; 4], Error> {

@@ -217,11 +217,11 @@ fn sensor_of(
     table.alone(&kinds_given, "write a [[sensors]] for each")?;
     let (kind, sampled) = match (&file.plane, &file.plate, &file.space, &file.probe) {
         (Some(own), None, None, None) => {
-            let normal = normal_of(table, own, name)?;
+            let normal = normal_of(table, own)?;
             let point = own.get_ref().point;
             (SensorKind::Plane { point, normal }, false)
         }
-        (None, Some(own), None, None) => (SensorKind::Plate(plate_of(table, own, name)?), false),
+        (None, Some(own), None, None) => (SensorKind::Plate(plate_of(table, own)?), false),
         (None, None, Some(own), None) => (space_of(table, own)?, true),
         (None, None, None, Some(_)) => {
             let least = &file.least_acceleration;

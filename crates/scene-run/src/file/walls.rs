@@ -149,14 +149,12 @@ pub fn wall_of(
     ];
     table.alone(&given, "write a [[walls]] for each")?;
     let shapes = [
-        file.plane.as_ref().map(|own| plane_of(&table, own, name)),
+        file.plane.as_ref().map(|own| plane_of(&table, own)),
         file.plate
             .as_ref()
-            .map(|own| Ok(Shape::Plates(vec![plate_of(&table, own, name)?]))),
+            .map(|own| Ok(Shape::Plates(vec![plate_of(&table, own)?]))),
         file.bin.as_ref().map(|own| box_of(&table, own)),
-        file.cylinder
-            .as_ref()
-            .map(|own| cylinder_of(&table, own, name)),
+        file.cylinder.as_ref().map(|own| cylinder_of(&table, own)),
         file.mesh
             .as_ref()
             .map(|own| mesh_of(&table, own, name, findings)),
@@ -176,32 +174,32 @@ pub fn wall_of(
 }
 
 /// The error of a shape that has no extent.
-fn flat(table: &Section, shape: &Spanned<impl Sized>, key: &str, wall: &str) -> Error {
+fn flat(table: &Section, shape: &Spanned<impl Sized>, key: &str) -> Error {
     let problem = "it must have a length, and edges must not be parallel";
-    table.refused(&shape.span(), key, wall, problem)
+    table.refused(&shape.span(), key, table.written(&shape.span()), problem)
 }
 
-fn plane_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Shape, Error> {
-    let normal = normal_of(table, plane, wall)?;
+fn plane_of(table: &Section, plane: &Spanned<PlaneFile>) -> Result<Shape, Error> {
+    let normal = normal_of(table, plane)?;
     let PlaneFile { point, .. } = *plane.get_ref();
     Ok(Shape::Plane { point, normal })
 }
 
 /// The normal of a plane, of length 1.
-pub fn normal_of(table: &Section, plane: &Spanned<PlaneFile>, wall: &str) -> Result<Vector, Error> {
-    unit(plane.get_ref().normal).ok_or_else(|| flat(table, plane, "plane normal", wall))
+pub fn normal_of(table: &Section, plane: &Spanned<PlaneFile>) -> Result<Vector, Error> {
+    unit(plane.get_ref().normal).ok_or_else(|| flat(table, plane, "plane normal"))
 }
 
 /// Sine of the angle of edges below which they are parallel; 1.
 const FLAT: f64 = 1e-9;
 
 /// A parallelogram.
-pub fn plate_of(table: &Section, plate: &Spanned<PlateFile>, wall: &str) -> Result<Plate, Error> {
+pub fn plate_of(table: &Section, plate: &Spanned<PlateFile>) -> Result<Plate, Error> {
     let PlateFile { corner, edges } = *plate.get_ref();
     let [a, b] = edges;
     match length(cross(a, b)) > FLAT * length(a) * length(b) {
         true => Ok(Plate { corner, edges }),
-        false => Err(flat(table, plate, "plate edges", wall)),
+        false => Err(flat(table, plate, "plate edges")),
     }
 }
 
@@ -213,7 +211,7 @@ fn box_of(table: &Section, bin: &Spanned<BoxFile>) -> Result<Shape, Error> {
     })
 }
 
-fn cylinder_of(table: &Section, tube: &Spanned<CylinderFile>, wall: &str) -> Result<Shape, Error> {
+fn cylinder_of(table: &Section, tube: &Spanned<CylinderFile>) -> Result<Shape, Error> {
     let file = tube.get_ref();
     let (start, end) = (file.start, file.end);
     let diameter = table.given(&file.diameter, "cylinder diameter", "m")?;
@@ -223,7 +221,7 @@ fn cylinder_of(table: &Section, tube: &Spanned<CylinderFile>, wall: &str) -> Res
         return Err(table.refused(&at.span(), "cylinder diameter", at.get_ref(), problem));
     }
     if start == end {
-        return Err(flat(table, tube, "cylinder", wall));
+        return Err(flat(table, tube, "cylinder"));
     }
     Ok(Shape::Cylinder {
         start,

@@ -53,11 +53,28 @@ pub fn frames_file(directory: &Path) -> Result<PathBuf, Error> {
         let name = path.file_name().and_then(|name| name.to_str());
         name.is_some_and(|name| name.starts_with(FRAMES_FILE) && name.ends_with(".partial"))
     });
-    growing.max().ok_or_else(|| {
-        let path = directory.to_path_buf();
-        Error::from(SceneFileError::FramesAbsent { path })
+    growing.max().ok_or_else(|| frames_absent(directory))
+}
+
+/// That a run has no frames, and why.
+pub(crate) fn frames_absent(directory: &Path) -> Error {
+    let problem = match directory.join(SUMMARY).exists() {
+        true => {
+            "no frames were recorded; add to the scene: [record] frames = \"20 ms\", and run it again"
+        }
+        false => {
+            "no run of this scene came to its end, so there are no frames; mend what stopped it, and \
+             run it again"
+        }
+    };
+    Error::from(SceneFileError::FramesAbsent {
+        path: directory.to_path_buf(),
+        problem,
     })
 }
+
+/// Results of a run, which are written at its end.
+const SUMMARY: &str = "scene.json";
 
 impl SceneFrames {
     /// Opens a file of frames, also while it grows.

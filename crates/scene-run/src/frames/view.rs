@@ -1,7 +1,7 @@
 //! Seeing a scene that has run: a picture, files for ParaView.
 
 use crate::frames::figure::{FROM, scene_painting};
-use crate::frames::read::{SceneFrames, frames_file};
+use crate::frames::read::{SceneFrames, frames_absent, frames_file};
 use crate::frames::vtk::write_vtk;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -89,10 +89,7 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     }
     let mut frames = open_frames(path)?;
     let Some(last) = frames.frames.len().checked_sub(1) else {
-        let path = frames.path().to_path_buf();
-        return Err(Error::from(
-            crate::file_error::SceneFileError::FramesAbsent { path },
-        ));
+        return Err(frames_absent(&run_directory(path)));
     };
     if let Some(time) = request.time {
         let end = frames.frames[last].time;

@@ -358,6 +358,11 @@ fn rejects_what_cannot_be_drawn_or_recorded() {
         &["scene", "vtk", "s/scene.run"],
         &["no frames were recorded"],
     );
+    std::fs::remove_file(folder.path().join("s/scene.run/scene.json")).unwrap();
+    refused(
+        &["scene", "picture", "s/scene.run"],
+        &["no run of this scene came to its end"],
+    );
     change(&path, &[("#frames", "frames = \"20 ms\"")]);
     assert!(windfall(&["scene", "run", "s/scene.toml"], folder.path()).0);
     for (option, value, words) in [
