@@ -3,7 +3,7 @@
 use crate::deck::{FRAMES, LOG};
 use crate::frames::{Frame, FrameReader};
 use crate::program::{Launch, Program, wrong};
-use crate::running::{LOOK, Running, remove_restarts};
+use crate::running::{LOOK, Running, SCREEN, make_room, remove_restarts};
 use std::fs::{File, OpenOptions};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,7 @@ impl Frames {
         let engine = program.engine;
         let pipe = directory.join(FRAMES);
         check_written(&pipe, None)?;
-        Running::make_room(directory, &[LOG])?;
+        make_room(directory, &[SCREEN, LOG])?;
         let _ = std::fs::remove_file(&pipe);
         remove_restarts(directory);
         let made = Command::new("mkfifo").arg(&pipe).status();

@@ -15,6 +15,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::inputs::protect;
 use windfall_files::on_threads::on_threads;
+use windfall_files::option_value::unusable as unusable_option;
 use windfall_files::progress::Progress;
 use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::engine_kind::Engine;
@@ -213,6 +214,7 @@ pub fn run_on_engine(
     own: &EngineRequest,
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
+    check_options(own)?;
     if own.engine == Engine::Windfall {
         return run_scene(path, request, progress);
     }
@@ -247,6 +249,34 @@ pub fn run_on_engine(
     on_threads(request.threads, || {
         Ok(run_moved(plan, moved, &out, request.start, progress)?.outcome)
     })
+}
+
+/// Refuses options of another engine: a run without them would not be the one that was asked for.
+fn check_options(own: &EngineRequest) -> Result<(), Error> {
+    let of_both = [
+        ("--ranks", own.ranks > 1),
+        ("--engine-program", own.engine_program.is_some()),
+        ("--frames", own.frames.is_some()),
+        ("--frame-steps", own.deck.frame_steps.is_some()),
+    ];
+    let of_lammps = [
+        ("--engine-library", own.engine_library.is_some()),
+        ("--engine-frames", own.engine_frames),
+        ("--pulses", own.pulses.is_some()),
+    ];
+    let refused = |options: &[(&'static str, bool)], engines: &str| {
+        let first = options.iter().find(|(_, given)| *given);
+        first.map_or(Ok(()), |(option, _)| {
+            let problem = format!("it is not for {}: use {engines}", own.engine.title());
+            Err(unusable_option(*option, problem))
+        })
+    };
+    match own.engine {
+        Engine::Lammps => Ok(()),
+        Engine::Liggghts => refused(&of_lammps, "--engine lammps"),
+        Engine::Windfall => refused(&of_both, "--engine lammps or --engine liggghts")
+            .and_then(|()| refused(&of_lammps, "--engine lammps")),
+    }
 }
 
 /// What moves the fruit, and its name with its version.
@@ -304,10 +334,6 @@ fn pulses_of(
     ready: &mut Ready,
     directory: &Path,
 ) -> Result<(Box<dyn Mover>, String), Error> {
-    if own.engine != Engine::Lammps {
-        let problem = "its ranks find no pulses (--pulses is for LAMMPS): use --frames";
-        return Err(wrong(own.engine, problem.to_owned()));
-    }
     if let Some(key) = outside(&ready.plan) {
         let problem = format!(
             "pulses say nothing of where fruit are on their way: {key} needs the frames of the deck, with --frames"

@@ -28,7 +28,19 @@ pub(crate) struct Running {
 /// Time between looks whether the engine still runs.
 pub(crate) const LOOK: Duration = Duration::from_millis(100);
 /// What the engine prints, in its directory.
-const SCREEN: &str = "screen.txt";
+pub(crate) const SCREEN: &str = "screen.txt";
+
+/// Makes room for files that an engine writes in its directory.
+///
+/// # Errors
+/// Somebody else's files are there.
+pub(crate) fn make_room(directory: &Path, names: &[&str]) -> Result<(), Error> {
+    for name in names {
+        check_written(&directory.join(name), None)?;
+        list_filled_by_others(&directory.join(name))?;
+    }
+    Ok(())
+}
 
 impl Running {
     /// Starts an engine; what it prints goes into its directory.
@@ -64,18 +76,6 @@ impl Running {
             directory: directory.to_path_buf(),
             _scratch: Arc::clone(&program.scratch),
         })
-    }
-
-    /// Makes room for what an engine prints in its directory.
-    ///
-    /// # Errors
-    /// Somebody else's files are there.
-    pub fn make_room(directory: &Path, own: &[&str]) -> Result<(), Error> {
-        for name in [SCREEN].iter().chain(own) {
-            check_written(&directory.join(name), None)?;
-            list_filled_by_others(&directory.join(name))?;
-        }
-        Ok(())
     }
 
     /// Where it runs.

@@ -4,6 +4,7 @@ use crate::deck::LOG;
 use crate::program::wrong;
 use crate::ranks::library::VERSION;
 use crate::ranks::part::{End, Head, PartWriter, Record, name_parts, scene_of};
+use crate::running::make_room;
 use crate::simplify::simplified;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -83,6 +84,8 @@ fn run_alone(request: &RankRequest) -> Result<(), Error> {
     simplified(&mut plan, Engine::Lammps);
     plan.scene.time_step *= frame_steps as f64;
     let directory = std::path::absolute(directory).map_err(access(directory, "read"))?;
+    // LAMMPS would replace a file of that name, whoever wrote it.
+    make_room(&directory, &[LOG])?;
     // The deck names its files from there.
     std::env::set_current_dir(&directory).map_err(access(&directory, "read"))?;
     let lammps = Lammps::begin(library, &["-log", LOG]).map_err(told)?;

@@ -3,10 +3,11 @@
 use crate::deck::LOG;
 use crate::program::{Launch, Program, wrong};
 use crate::ranks::part::{End, PartReader, Record, part_name, partial_name, remove_parts};
-use crate::running::Running;
+use crate::running::{Running, SCREEN, make_room};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use windfall_files::error::Error;
+use windfall_files::inputs::protect;
 use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::motion::simulation::Simulation;
@@ -29,7 +30,7 @@ pub(crate) fn start_ranks(
     (scene, windfall, library): (&Path, &Path, &Path),
     directory: &Path,
 ) -> Result<Running, Error> {
-    Running::make_room(directory, &[LOG])?;
+    make_room(directory, &[SCREEN, LOG])?;
     // Of a run that was stopped.
     remove_parts(directory)?;
     let absolute = |path: &Path| {
@@ -114,6 +115,9 @@ impl Pulses {
             None => part_name(rank),
         };
         let path = self.directory.join(name);
+        if self.running.is_none() {
+            protect(&path);
+        }
         loop {
             let over = self.running.as_mut().is_none_or(Running::is_over);
             let part = PartReader::open(&path);

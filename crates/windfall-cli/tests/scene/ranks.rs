@@ -262,6 +262,46 @@ fn reference_lammps_a_rank_that_cannot_write_ends_the_run_and_says_which() {
     assert!(!folder.path().join("scene.lammps/pulses.0.bin").exists());
 }
 
+#[test]
+fn reference_lammps_a_rank_leaves_the_files_of_others() {
+    let folder = scene_of(&crossing());
+    let export = ["scene", "export", "scene.toml", "--engine", "lammps"];
+    assert!(windfall(&export, folder.path()).0);
+    let log = folder.path().join("scene.lammps/log.txt");
+    std::fs::write(&log, "my own notes\n").unwrap();
+    let rank = ["scene", "rank", "scene.toml", "--deck", "scene.lammps"];
+    let (done, _, problem) = windfall(&rank, folder.path());
+    assert!(!done && problem.contains("log.txt"), "{problem}");
+    assert_eq!(std::fs::read_to_string(&log).unwrap(), "my own notes\n");
+}
+
+#[test]
+fn options_of_another_engine_are_refused() {
+    let folder = scene_of(IMPACTS);
+    for (engine, option, words) in [
+        (
+            "windfall",
+            "--pulses=deck",
+            "not for windfall: use --engine lammps",
+        ),
+        ("windfall", "--frames=frames.bin", "--engine liggghts"),
+        ("windfall", "--frame-steps=3", "--engine liggghts"),
+        ("windfall", "--ranks=2", "--engine liggghts"),
+        ("windfall", "--engine-frames", "use --engine lammps"),
+        (
+            "liggghts",
+            "--pulses=deck",
+            "not for LIGGGHTS: use --engine lammps",
+        ),
+        ("liggghts", "--engine-library=x.so", "use --engine lammps"),
+    ] {
+        let all = ["scene", "run", "scene.toml", "--engine", engine, option];
+        let (done, _, problem) = windfall(&all, folder.path());
+        assert!(!done && problem.contains(words), "{option}: {problem}");
+        assert!(!folder.path().join("scene.run").exists(), "{option}");
+    }
+}
+
 /// Processes whose arguments hold a word.
 fn processes(word: &str) -> Vec<String> {
     let mut found = Vec::new();
