@@ -242,17 +242,25 @@ mod tests {
     use super::*;
     use windfall_contact::expression::parse_law;
 
-    #[test]
-    fn a_step_is_as_long_as_its_error_allows() {
+    fn apple() -> Interaction {
         let law = parse_law("kuwabara-kono(k=753599, c=1524)").unwrap();
-        let interaction = Interaction::frictionless(law.complete().unwrap());
-        let impact = Impact {
-            interaction: &interaction,
+        Interaction::frictionless(law.complete().unwrap())
+    }
+
+    fn impact(interaction: &Interaction, speed: f64, shaking: Option<Shaking>) -> Impact<'_> {
+        Impact {
+            interaction,
             radius: 0.04,
             mass: 0.2,
-            speed: 0.5,
-            shaking: None,
-        };
+            speed,
+            shaking,
+        }
+    }
+
+    #[test]
+    fn a_step_is_as_long_as_its_error_allows() {
+        let apple = apple();
+        let impact = impact(&apple, 0.5, None);
         let (step, found) = impact.step_for(1e-3).unwrap();
         assert!(found.peak <= 1e-3 && found.energy <= 1e-3, "{found:?}");
         // Ended at zero force after 7.65 ms.
@@ -265,30 +273,39 @@ mod tests {
 
     #[test]
     fn a_stated_error_holds_on_a_floor_that_shakes() {
-        let law = parse_law("kuwabara-kono(k=753599, c=1524)").unwrap();
-        let interaction = Interaction::frictionless(law.complete().unwrap());
-        let impact = Impact {
-            interaction: &interaction,
-            radius: 0.04,
-            mass: 0.2,
-            speed: 2.0,
-            shaking: Some(Shaking {
-                amplitude: 2e-3,
-                frequency: 100.0,
-            }),
+        let apple = apple();
+        let shaking = Shaking {
+            amplitude: 2e-3,
+            frequency: 100.0,
         };
+        let (longer, _) = impact(&apple, 2.0, None).step_for(1e-3).unwrap();
+        let impact = impact(&apple, 2.0, Some(shaking));
         let (step, stated) = impact.step_for(1e-3).unwrap();
-        let resting = Impact {
-            shaking: None,
-            ..impact
-        };
-        let (longer, _) = resting.step_for(1e-3).unwrap();
         assert!(step < 0.8 * longer, "{step} {longer}");
         let fine = FINE * stated.duration;
         let at = |in_step, period| Begin {
             in_step,
             in_period: Some(period),
         };
+        // SciPy's DOP853 at 1e-11: phase, peak force, absorbed energy.
+        for (period, peak, energy) in [
+            (0.0, 135.886_719_58, 0.231_278_577),
+            (0.375, 184.592_828_33, 0.371_935_194),
+            (0.625, 326.407_304_75, 0.935_890_363),
+            (0.875, 209.632_713_51, 0.467_943_534),
+        ] {
+            let own = impact.measured(fine, at(0.5, period)).unwrap();
+            assert!(
+                (own.peak / peak - 1.0).abs() < 1e-5,
+                "{period}: {}",
+                own.peak
+            );
+            assert!(
+                (own.energy / energy - 1.0).abs() < 1e-5,
+                "{period}: {}",
+                own.energy
+            );
+        }
         // Errors over the stated ones, the worst of each phase of the vibration.
         let over = |period: f64| {
             let exact = impact.measured(fine, at(0.5, period)).unwrap();
