@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use windfall_scene_run::run::advance::SceneStart;
 use windfall_scene_run::run::outcome::SceneOutcome;
+use windfall_scene_run::run::tables::text_of_scene;
 use windfall_scene_run::run::workflow::{SceneRequest, run_scene};
 
 /// A scene in a folder of its own.
@@ -632,4 +633,25 @@ fn a_probe_has_no_part_in_the_share_of_bruised_fruit() {
         let bruised = rows.iter().filter(|own| number(own, column) > 0.0);
         assert_eq!(bruised.count(), fruit);
     }
+}
+
+#[test]
+fn an_account_of_nothing_is_none() {
+    let bounce = |scene: &str| {
+        let lab = Lab::new(scene, &(drop("[0, 0, 0.05]", "[0.5, 0, -2]") + FLOOR));
+        lab.run()
+    };
+    let fine = bounce("end = \"50 ms\"");
+    assert!(fine.energy_closure.abs() < 1e-3, "{}", fine.energy_closure);
+    assert!(fine.findings.is_empty());
+    // It has not come down yet.
+    let flight = bounce("end = \"1 ms\"");
+    assert_eq!((flight.contacts, flight.energy.lost()), (0, 0.0));
+    assert!(
+        flight.energy_closure.abs() < 1e-3,
+        "{}",
+        flight.energy_closure
+    );
+    assert!(text_of_scene(&flight).contains("No energy was lost."));
+    assert!(text_of_scene(&fine).contains("The energy account closes to"));
 }

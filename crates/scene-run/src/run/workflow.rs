@@ -229,12 +229,18 @@ fn findings_of(
         findings.extend(finding_of_blows(blows));
         findings.extend(blows.finding_of_range());
     }
-    match moved.large_closure {
-        Some(large) if closure.abs() > large => findings.push(engine_account(closure)),
-        None if closure.abs() > LARGE_CLOSURE => findings.push(own_account(closure)),
-        _ => {}
-    }
+    findings.extend(finding_of_account(closure, moved.large_closure));
     findings
+}
+
+/// That the energy account does not close.
+///
+/// * `large`: lack that is worth a word, on another engine
+fn finding_of_account(closure: f64, large: Option<f64>) -> Option<FindingOutcome> {
+    match large {
+        Some(large) => (closure.abs() > large).then(|| engine_account(closure)),
+        None => (closure.abs() > LARGE_CLOSURE).then(|| own_account(closure)),
+    }
 }
 
 /// Lack of the account of a scene on windfall's own engine that is worth a word; 1.
@@ -448,4 +454,21 @@ fn lifted(wall: &Wall, height: impl Fn([f64; 3]) -> f64) -> f64 {
         corners.iter().map(risen).collect::<Vec<f64>>()
     });
     rises.fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_account_that_does_not_close_is_told_on_every_engine() {
+        let code = |closure, large| finding_of_account(closure, large).map(|own| own.code);
+        for sign in [-1.0, 1.0] {
+            assert_eq!(code(0.009 * sign, None), None);
+            assert_eq!(code(0.011 * sign, None).as_deref(), Some("energy-account"));
+            assert_eq!(code(0.019 * sign, Some(0.02)), None);
+            let other = code(0.021 * sign, Some(0.02));
+            assert_eq!(other.as_deref(), Some("engine-account"));
+        }
+    }
 }
