@@ -311,10 +311,10 @@ impl Blows {
         let walls = scene.walls.len();
         let ratios = self.variance_ratios(walls);
         let limits: Vec<(f64, f64)> = plan.limits.iter().copied().zip(ratios).collect();
-        let fruit = self.of.iter().zip(&self.probes);
-        let fruit = fruit.filter(|(_, probe)| !**probe);
-        let fruit: Vec<Vec<Blow>> = fruit.map(|(own, _)| own.clone()).collect();
-        let shares = plan.model.shares_above(&fruit, &limits, LEVEL, DRAWS);
+        // Probes have no blows.
+        let fruit = self.probes.iter().filter(|probe| !**probe).count();
+        let model = &plan.model;
+        let shares = model.shares_above((&self.of, fruit), &limits, LEVEL, DRAWS);
         let limits = plan.limits.iter().zip(shares);
         let limits = limits.map(|(&limit, found)| LimitOutcome {
             limit,
@@ -348,9 +348,9 @@ impl Blows {
         places.retain(|own| own.bruises > 0);
         places.sort_by(|a, b| b.fruit.cmp(&a.fruit).then(b.largest.total_cmp(&a.largest)));
         BruiseOutcome {
-            fruit: fruit.len(),
+            fruit,
             limits: limits.collect(),
-            mean_largest: largest / fruit.len().max(1) as f64,
+            mean_largest: largest / fruit.max(1) as f64,
             places,
         }
     }

@@ -330,11 +330,12 @@ impl BruiseModel {
     /// coefficients, resampled.
     ///
     /// * `blows`: contacts of each fruit
+    /// * `fruit`: how many fruit count; others have no blows
     /// * `limits`: m³, each with the variance of the share over that of independent fruit
     /// * `level`: of the interval; 1
     pub fn shares_above(
         &self,
-        blows: &[Vec<Blow>],
+        (blows, fruit): (&[Vec<Blow>], usize),
         limits: &[(f64, f64)],
         level: f64,
         (draws, seed): (usize, u64),
@@ -346,7 +347,7 @@ impl BruiseModel {
         generator.set_stream(1);
         let share = |place: usize| {
             let own: Vec<usize> = counts.iter().map(|counts| counts[place]).collect();
-            share_of(&own, (blows.len(), limits[place].1), level, &mut generator)
+            share_of(&own, (fruit, limits[place].1), level, &mut generator)
         };
         (0..limits.len()).map(share).collect()
     }
@@ -519,7 +520,7 @@ mod tests {
     fn closed_form_shares_and_their_uncertainty() {
         let fruit = |count: usize, energy: f64| vec![vec![blow(energy, [0.0, 0.0, 1.0])]; count];
         let blows = [fruit(3, 0.15), fruit(7, 0.06)].concat();
-        let found = MODEL.shares_above(&blows, &[(1e-7, 1.0)], 0.95, (20_000, 1))[0];
+        let found = MODEL.shares_above((&blows, blows.len()), &[(1e-7, 1.0)], 0.95, (20_000, 1))[0];
         // Quantiles of Beta(3.5, 7.5), by Brown, Cai and DasGupta's (2001) interval of Jeffreys:
         // mean 0.318, standard deviation 0.1345; checked by its first two moments below.
         assert_eq!(found.share, 0.3);
@@ -528,7 +529,7 @@ mod tests {
             "{found:?}"
         );
         // None of ten: the interval does not shrink to nothing.
-        let none = MODEL.shares_above(&fruit(10, 0.06), &[(1e-7, 1.0)], 0.95, (20_000, 1))[0];
+        let none = MODEL.shares_above((&fruit(10, 0.06), 10), &[(1e-7, 1.0)], 0.95, (20_000, 1))[0];
         assert!(
             none.share == 0.0 && none.low < 1e-3 && (0.20..0.24).contains(&none.high),
             "{none:?}"
@@ -538,8 +539,8 @@ mod tests {
             threshold_sd: 0.03,
             ..MODEL
         };
-        let wide = unsure.shares_above(&blows, &[(2.5e-7, 1.0)], 0.95, (4000, 1))[0];
-        let sure = MODEL.shares_above(&blows, &[(2.5e-7, 1.0)], 0.95, (4000, 1))[0];
+        let wide = unsure.shares_above((&blows, blows.len()), &[(2.5e-7, 1.0)], 0.95, (4000, 1))[0];
+        let sure = MODEL.shares_above((&blows, blows.len()), &[(2.5e-7, 1.0)], 0.95, (4000, 1))[0];
         assert!(
             wide.high - wide.low > sure.high - sure.low,
             "{wide:?} {sure:?}"
@@ -558,7 +559,8 @@ mod tests {
         let fruit = |count: usize, energy: f64| vec![vec![blow(energy, [0.0, 0.0, 1.0])]; count];
         let blows = [fruit(30, 0.15), fruit(70, 0.06)].concat();
         let width = |ratio: f64| {
-            let own = MODEL.shares_above(&blows, &[(1e-7, ratio)], 0.95, (20_000, 1))[0];
+            let own =
+                MODEL.shares_above((&blows, blows.len()), &[(1e-7, ratio)], 0.95, (20_000, 1))[0];
             let logit = |p: f64| (p / (1.0 - p)).ln();
             logit(own.high) - logit(own.low)
         };
