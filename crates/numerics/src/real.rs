@@ -65,6 +65,8 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// `positive` in the lanes where `self > 0`, `otherwise` in the others.
     fn select(self, positive: Self, otherwise: Self) -> Self;
+    /// Whether any lane is > 0.
+    fn any_above_zero(self) -> bool;
     /// A function of one number applied to each lane.
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
 }
@@ -119,6 +121,10 @@ impl Real for f64 {
     #[inline(always)]
     fn select(self, positive: Self, otherwise: Self) -> Self {
         if self > 0.0 { positive } else { otherwise }
+    }
+    #[inline(always)]
+    fn any_above_zero(self) -> bool {
+        self > 0.0
     }
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {
@@ -259,6 +265,14 @@ impl<const W: usize> Real for Lanes<W> {
             };
         }
         Self(out)
+    }
+    #[inline(always)]
+    fn any_above_zero(self) -> bool {
+        let mut any = false;
+        for i in 0..W {
+            any |= self.0[i] > 0.0;
+        }
+        any
     }
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {

@@ -7,6 +7,8 @@
 #[cfg(target_arch = "x86_64")]
 mod pair;
 #[cfg(target_arch = "x86_64")]
+mod turn;
+#[cfg(target_arch = "x86_64")]
 mod vector;
 mod work;
 
@@ -17,7 +19,7 @@ use {
     vector::{OnEight, OnFour, OnPairs},
 };
 
-pub use work::{EightLanes, FourLanes, FourNumbers, LANES};
+pub use work::{EIGHT, EightLanes, EightNumbers, FourLanes, LANES, Row};
 
 /// Does `work` on vector registers where the processor has them (AVX2 and FMA; of
 /// AVX-512, twice as many), on [`Lanes`] elsewhere.
@@ -101,7 +103,10 @@ mod tests {
                 a.select(b, c),
                 a.map(|a| a.sin() + 1.0),
             ];
-            out.map(|value| value.plain().0.map(bits)).to_vec()
+            let mut out = out.map(|value| value.plain().0.map(bits)).to_vec();
+            let any = [a, b, a * 0.0, -a].map(|own| u64::from(own.any_above_zero()));
+            out.extend(any.map(|own| [own; K]));
+            out
         }
     }
 
@@ -109,24 +114,24 @@ mod tests {
         type Output = Vec<[u64; LANES]>;
 
         #[inline(always)]
-        fn run<R: FourNumbers>(self, zero: R) -> Self::Output {
-            let (a, b) = (zero.with_plain(self.a), zero.with_plain(self.b));
-            let c = zero.constant(0.3);
-            let columns = zero.columns([self.a, self.b, self.b, c.plain()]);
-            let rows = R::rows([a, b, a, c]);
-            let turned = zero.each_plain(columns).into_iter().chain(rows);
-            let mut out = self.each(zero);
-            out.extend(turned.map(|value| value.0.map(bits)));
-            out
+        fn run<R: Real<Plain = Lanes<LANES>>>(self, zero: R) -> Self::Output {
+            self.each(zero)
         }
     }
 
-    impl EightLanes for Operations<{ 2 * LANES }> {
-        type Output = Vec<[u64; 2 * LANES]>;
+    impl EightLanes for Operations<EIGHT> {
+        type Output = Vec<[u64; EIGHT]>;
 
         #[inline(always)]
-        fn run<R: Real<Plain = Lanes<{ 2 * LANES }>>>(self, zero: R) -> Self::Output {
-            self.each(zero)
+        fn run<R: EightNumbers>(self, zero: R) -> Self::Output {
+            let rows = self.a.0.map(|own| Lanes([own, 1.0, -own, own * 3.0]));
+            let columns = zero.columns(rows);
+            let [j, k, l, m] = columns;
+            let turned = R::rows([m, j, k, l], [l, l, j, k]);
+            let mut out = self.each(zero);
+            out.extend(zero.each_plain(columns).map(|own| own.0.map(bits)));
+            out.extend(zero.each_plain(turned).map(|own| own.0.map(bits)));
+            out
         }
     }
 
@@ -165,7 +170,7 @@ mod tests {
     }
 
     /// The lanes and, behind them, the same in other places.
-    fn doubled(Lanes([a, b, c, d]): Lanes<LANES>) -> Lanes<{ 2 * LANES }> {
+    fn doubled(Lanes([a, b, c, d]): Lanes<LANES>) -> Lanes<EIGHT> {
         Lanes([a, b, c, d, d, c, b, a])
     }
 }

@@ -14,7 +14,9 @@ use windfall_contact::law::SMALLEST_DISPLACEMENT;
 use windfall_numerics::ode::dense::DenseStep;
 use windfall_numerics::ode::lockstep::{Beginning, Lockstep, LockstepSystem, attempt};
 use windfall_numerics::real::{Lanes, Real};
-use windfall_numerics::real_vector::{EightLanes, compiled_for_vectors, with_eight_lanes};
+use windfall_numerics::real_vector::{
+    EightLanes, EightNumbers, compiled_for_vectors, with_eight_lanes,
+};
 
 /// Right-hand side of several impacts, each in flight or in contact.
 #[repr(align(64))]
@@ -137,7 +139,7 @@ impl<L: BatchLaw<N>, const N: usize, const W: usize> EightLanes for Attempt<'_, 
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Real<Plain = PerImpact>>(self, zero: R) {
+    fn run<R: EightNumbers>(self, zero: R) {
         attempt(zero, self.impacts, self.lockstep);
     }
 }

@@ -20,8 +20,8 @@
 use crate::fit::residual_pack::Pack;
 use crate::samples::{PACK, QUANTITIES, SampleGroup};
 use std::sync::LazyLock;
-use windfall_numerics::real::Lanes;
-use windfall_numerics::real_vector::{FourLanes, FourNumbers, with_four_lanes};
+use windfall_numerics::real::{Lanes, Real};
+use windfall_numerics::real_vector::{FourLanes, LANES, with_four_lanes};
 
 /// Samples that take the place of a block.
 pub(crate) const NODES: usize = 6;
@@ -296,7 +296,7 @@ impl FourLanes for Project<'_> {
     type Output = ([f64; NODES], f64);
 
     #[inline(always)]
-    fn run<R: FourNumbers>(self, zero: R) -> Self::Output {
+    fn run<R: Real<Plain = Lanes<LANES>>>(self, zero: R) -> Self::Output {
         let zero = zero.constant(0.0);
         let mut sums = [zero; NODES];
         let mut square = zero;

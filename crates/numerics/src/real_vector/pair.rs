@@ -1,7 +1,7 @@
 //! Twice as many numbers as a register holds, in two of them.
 
 use crate::real::{Lanes, Real};
-use crate::real_vector::work::LANES;
+use crate::real_vector::work::{EIGHT, LANES};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Numbers of which each half is one of `R`.
@@ -64,7 +64,7 @@ impl<R: Real> Add<f64> for Pair<R> {
 }
 
 impl<R: Real<Plain = Lanes<LANES>>> Real for Pair<R> {
-    type Plain = Lanes<{ 2 * LANES }>;
+    type Plain = Lanes<EIGHT>;
 
     #[inline(always)]
     fn constant(self, value: f64) -> Self {
@@ -72,7 +72,7 @@ impl<R: Real<Plain = Lanes<LANES>>> Real for Pair<R> {
     }
     #[inline(always)]
     fn plain(self) -> Self::Plain {
-        let mut out = [0.0; 2 * LANES];
+        let mut out = [0.0; EIGHT];
         out[..LANES].copy_from_slice(&self.0[0].plain().0);
         out[LANES..].copy_from_slice(&self.0[1].plain().0);
         Lanes(out)
@@ -111,6 +111,10 @@ impl<R: Real<Plain = Lanes<LANES>>> Real for Pair<R> {
     #[inline(always)]
     fn select(self, positive: Self, otherwise: Self) -> Self {
         each!(i, self.0[i].select(positive.0[i], otherwise.0[i]))
+    }
+    #[inline(always)]
+    fn any_above_zero(self) -> bool {
+        self.0[0].any_above_zero() | self.0[1].any_above_zero()
     }
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {

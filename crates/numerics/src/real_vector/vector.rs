@@ -2,7 +2,7 @@
 
 use crate::real::{Lanes, Real};
 use crate::real_vector::pair::Pair;
-use crate::real_vector::work::{EightLanes, FourLanes, FourNumbers, LANES};
+use crate::real_vector::work::{EIGHT, EightLanes, FourLanes, LANES};
 use pulp::Simd;
 use pulp::bytemuck::Pod;
 use pulp::x86::{V3, V4};
@@ -34,7 +34,7 @@ impl<F: EightLanes> pulp::NullaryFnOnce for OnEight<F> {
 
     #[inline(always)]
     fn call(self) -> F::Output {
-        self.work.run(Vector::<V4, { 2 * LANES }>::zero(self.simd))
+        self.work.run(Vector::<V4, EIGHT>::zero(self.simd))
     }
 }
 
@@ -56,10 +56,10 @@ impl<F: EightLanes> pulp::NullaryFnOnce for OnPairs<F> {
 
 /// `K` numbers in one register of a processor that has the instructions of `S`.
 #[derive(Clone, Copy)]
-struct Vector<S: Simd, const K: usize> {
+pub(super) struct Vector<S: Simd, const K: usize> {
     /// Shows that the processor has them.
-    simd: S,
-    lanes: S::f64s,
+    pub(super) simd: S,
+    pub(super) lanes: S::f64s,
 }
 
 impl<S: Simd, const K: usize> Vector<S, K> {
@@ -73,7 +73,7 @@ impl<S: Simd, const K: usize> Vector<S, K> {
         Self { simd, lanes }
     }
     #[inline(always)]
-    fn with(self, lanes: S::f64s) -> Self {
+    pub(super) fn with(self, lanes: S::f64s) -> Self {
         Self { lanes, ..self }
     }
 }
@@ -114,51 +114,6 @@ impl<S: Simd, const K: usize> Add<f64> for Vector<S, K> {
     #[inline(always)]
     fn add(self, other: f64) -> Self {
         self + self.splat(other)
-    }
-}
-
-impl FourNumbers for Vector<V3, LANES> {
-    #[inline(always)]
-    fn columns(self, rows: [Lanes<LANES>; LANES]) -> [Self; LANES] {
-        let avx = self.simd.avx;
-        let [a, b, c, d] = [
-            pulp::cast(rows[0].0),
-            pulp::cast(rows[1].0),
-            pulp::cast(rows[2].0),
-            pulp::cast(rows[3].0),
-        ];
-        let (even_ab, odd_ab) = (avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b));
-        let (even_cd, odd_cd) = (avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d));
-        [
-            self.with(pulp::cast(
-                avx._mm256_permute2f128_pd::<0x20>(even_ab, even_cd),
-            )),
-            self.with(pulp::cast(
-                avx._mm256_permute2f128_pd::<0x20>(odd_ab, odd_cd),
-            )),
-            self.with(pulp::cast(
-                avx._mm256_permute2f128_pd::<0x31>(even_ab, even_cd),
-            )),
-            self.with(pulp::cast(
-                avx._mm256_permute2f128_pd::<0x31>(odd_ab, odd_cd),
-            )),
-        ]
-    }
-    #[inline(always)]
-    fn rows(columns: [Self; LANES]) -> [Lanes<LANES>; LANES] {
-        let plain = [
-            columns[0].plain(),
-            columns[1].plain(),
-            columns[2].plain(),
-            columns[3].plain(),
-        ];
-        let rows = columns[0].columns(plain);
-        [
-            rows[0].plain(),
-            rows[1].plain(),
-            rows[2].plain(),
-            rows[3].plain(),
-        ]
     }
 }
 
@@ -215,6 +170,12 @@ where
             .simd
             .select_f64s(above, positive.lanes, otherwise.lanes);
         self.with(chosen)
+    }
+    #[inline(always)]
+    fn any_above_zero(self) -> bool {
+        let zero = self.simd.splat_f64s(0.0);
+        let above = self.simd.greater_than_f64s(self.lanes, zero);
+        self.simd.first_true_m64s(above) < K
     }
     #[inline(always)]
     fn map(self, function: impl Fn(f64) -> f64) -> Self {

@@ -5,6 +5,12 @@ use crate::real::{Lanes, Real};
 /// Numbers side by side, the same on every processor.
 pub const LANES: usize = 4;
 
+/// Twice as many.
+pub const EIGHT: usize = 2 * LANES;
+
+/// Four numbers that stand together in memory.
+pub type Row = Lanes<LANES>;
+
 /// Work on [`LANES`] numbers at a time.
 pub trait FourLanes {
     /// What comes out.
@@ -14,39 +20,46 @@ pub trait FourLanes {
     ///
     /// To be `#[inline(always)]`, and all that it calls in its loops too: what is
     /// compiled by itself is not compiled for the vector instructions.
-    fn run<R: FourNumbers>(self, zero: R) -> Self::Output;
+    fn run<R: Real<Plain = Lanes<LANES>>>(self, zero: R) -> Self::Output;
 }
 
-/// Work on twice [`LANES`] numbers at a time.
+/// Work on [`EIGHT`] numbers at a time.
 pub trait EightLanes {
     /// What comes out.
     type Output;
 
     /// As [`FourLanes::run`].
-    fn run<R: Real<Plain = Lanes<{ 2 * LANES }>>>(self, zero: R) -> Self::Output;
+    fn run<R: EightNumbers>(self, zero: R) -> Self::Output;
 }
 
-/// Numbers of [`LANES`] lanes, which go over into rows and back.
-pub trait FourNumbers: Real<Plain = Lanes<LANES>> {
-    /// The columns of four rows: number n holds the n-th of each row.
-    fn columns(self, rows: [Lanes<LANES>; LANES]) -> [Self; LANES];
-    /// The rows of four columns.
-    fn rows(columns: [Self; LANES]) -> [Lanes<LANES>; LANES];
+/// Numbers of [`EIGHT`] lanes, which go over into rows and back.
+pub trait EightNumbers: Real<Plain = Lanes<EIGHT>> {
+    /// The columns of eight rows: number n holds the n-th of each row.
+    fn columns(self, rows: [Row; EIGHT]) -> [Self; LANES];
+    /// The rows of eight columns.
+    fn rows(first: [Self; LANES], second: [Self; LANES]) -> [Self; EIGHT];
 }
 
-impl FourNumbers for Lanes<LANES> {
+impl EightNumbers for Lanes<EIGHT> {
     #[inline(always)]
-    fn columns(self, rows: [Self; LANES]) -> [Self; LANES] {
+    fn columns(self, rows: [Row; EIGHT]) -> [Self; LANES] {
         let mut columns = [self; LANES];
-        for (n, column) in columns.iter_mut().enumerate() {
-            for (lane, row) in rows.iter().enumerate() {
-                column.0[lane] = row.0[n];
+        for (lane, row) in rows.iter().enumerate() {
+            for n in 0..LANES {
+                columns[n].0[lane] = row.0[n];
             }
         }
         columns
     }
     #[inline(always)]
-    fn rows(columns: [Self; LANES]) -> [Self; LANES] {
-        columns[0].columns(columns)
+    fn rows(first: [Self; LANES], second: [Self; LANES]) -> [Self; EIGHT] {
+        let mut rows = [Self::ZERO; EIGHT];
+        for (lane, row) in rows.iter_mut().enumerate() {
+            for n in 0..LANES {
+                row.0[n] = first[n].0[lane];
+                row.0[LANES + n] = second[n].0[lane];
+            }
+        }
+        rows
     }
 }

@@ -7,13 +7,13 @@ use windfall_contact::laws::kind as laws;
 use windfall_contact::laws::kind::Law;
 use windfall_contact::laws::user::UserLaw;
 use windfall_numerics::real::Lanes;
-use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
+use windfall_numerics::real_vector::{EIGHT, EightLanes, EightNumbers, with_eight_lanes};
 
-/// Four numbers as they are kept.
-pub(crate) type Four = Lanes<LANES>;
+/// Eight numbers as they are kept.
+pub(crate) type Eight = Lanes<EIGHT>;
 
-/// Displacement (m), its rate (m/s) and the largest so far (m) of four contacts.
-pub(crate) type Given = [Four; 3];
+/// Displacement (m), its rate (m/s) and the largest so far (m) of eight contacts.
+pub(crate) type Given = [Eight; 3];
 
 /// Laws of contacts, of one kind.
 pub(crate) trait LawColumn: Send + Sync {
@@ -26,7 +26,7 @@ pub(crate) trait LawColumn: Send + Sync {
     /// What the law of each contact says.
     ///
     /// * `median`: the law of all, if they have the same but for a factor
-    /// * `first`: the first group of four
+    /// * `first`: the first group of eight
     /// * `given`: of each group
     /// * `found`: as long
     fn normal(
@@ -34,7 +34,7 @@ pub(crate) trait LawColumn: Send + Sync {
         median: Option<&Law>,
         first: usize,
         given: &[Given],
-        found: &mut [Normal<Four>],
+        found: &mut [Normal<Eight>],
     );
 }
 
@@ -73,19 +73,19 @@ impl<L: ContactLaw<N> + Variant, const N: usize> LawColumn for Column<L, N> {
         median: Option<&Law>,
         first: usize,
         given: &[Given],
-        found: &mut [Normal<Four>],
+        found: &mut [Normal<Eight>],
     ) {
         match median.and_then(L::of) {
-            Some(law) => with_four_lanes(OfOne::<L, N> { law, given, found }),
+            Some(law) => with_eight_lanes(OfOne::<L, N> { law, given, found }),
             None => self.of_each(first, given, found),
         }
     }
 }
 
 impl<L: ContactLaw<N>, const N: usize> Column<L, N> {
-    fn of_each(&self, first: usize, given: &[Given], found: &mut [Normal<Four>]) {
+    fn of_each(&self, first: usize, given: &[Given], found: &mut [Normal<Eight>]) {
         for (group, (given, found)) in given.iter().zip(found).enumerate() {
-            let own = self.0[(first + group) * LANES..].iter().take(LANES);
+            let own = self.0[(first + group) * EIGHT..].iter().take(EIGHT);
             for (lane, law) in own.enumerate() {
                 let [d, v, peak] = given.map(|each| each.0[lane]);
                 let own = normal_of(law, d, v, peak);
@@ -101,14 +101,14 @@ impl<L: ContactLaw<N>, const N: usize> Column<L, N> {
 struct OfOne<'a, L, const N: usize> {
     law: L,
     given: &'a [Given],
-    found: &'a mut [Normal<Four>],
+    found: &'a mut [Normal<Eight>],
 }
 
-impl<L: ContactLaw<N>, const N: usize> FourLanes for OfOne<'_, L, N> {
+impl<L: ContactLaw<N>, const N: usize> EightLanes for OfOne<'_, L, N> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: FourNumbers>(self, zero: R) {
+    fn run<R: EightNumbers>(self, zero: R) {
         for (given, found) in self.given.iter().zip(self.found) {
             let [d, v, peak] = zero.with_each_plain(*given);
             let own = normal_of(&self.law, d, v, peak);

@@ -412,11 +412,10 @@ impl PairTable {
         self.bounds[blocks].iter().map(Range::len).sum()
     }
 
-    /// Entries of other blocks in which bodies are second, by their number.
-    #[inline(always)]
-    pub(crate) fn incoming(&self, bodies: Range<usize>) -> &[u32] {
-        let start = |body: usize| self.incoming_start[body] as usize;
-        &self.incoming[start(bodies.start)..start(bodies.end)]
+    /// Entries of other blocks in which some bodies are second, by their number; and where those of
+    /// each begin.
+    pub(crate) fn incoming(&self, first: usize, count: usize) -> (&[u32], &[u32]) {
+        (&self.incoming, &self.incoming_start[first..=first + count])
     }
 
     /// The entry of two bodies.

@@ -12,7 +12,7 @@ use crate::vector::{dot, length, plus_scaled, scaled, subtract};
 use windfall_contact::effective::effective_radius;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::prefetch::prefetch;
-use windfall_numerics::real_vector::with_four_lanes;
+use windfall_numerics::real_vector::with_eight_lanes;
 
 /// The entries of one block and one interaction.
 pub(crate) struct Part<'a> {
@@ -100,7 +100,7 @@ impl PairContacts {
         }
         let mut parting = std::mem::take(&mut self.parting);
         let mut turning = std::mem::take(&mut self.turning);
-        let deepest = with_four_lanes(Batch {
+        let deepest = with_eight_lanes(Batch {
             bodies: &bodies,
             store: &mut self.store,
             pairs: &self.pairs,
@@ -111,7 +111,7 @@ impl PairContacts {
             surface,
             clock: now.clock,
         });
-        if deepest > LARGEST_OVERLAP {
+        if deepest > 0.0 {
             outcome
                 .problem
                 .get_or_insert_with(|| self.deepest(&bodies, now));

@@ -1,17 +1,15 @@
-//! Forces of pairs that touch, four at a time.
+//! Forces of pairs that touch, eight at a time.
 
-use crate::contacts::law_column::Four;
+use crate::contacts::law_column::Eight;
 use crate::contacts::neighbours::BodiesFrom;
+use crate::contacts::pair_contacts::LARGEST_OVERLAP;
 use crate::contacts::react::{Clock, Normal, Touch, direction_before, surface_motion};
 use crate::contacts::store::{CHUNK, Load, Store, Turning, add_load, loads};
 use crate::interaction::Interaction;
+use crate::line::Aligned;
 use crate::vector::dot;
-use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
-use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES};
-
-/// How many groups ahead memory is prefetched.
-const AHEAD: usize = 24;
+use windfall_numerics::real_vector::{EIGHT, EightLanes, EightNumbers, Row};
 
 /// The bodies of a contact, from the first of the block on, and its number among those that
 /// reach into another block, or [`NONE`](crate::contacts::store::NONE).
@@ -38,34 +36,33 @@ pub(crate) struct Batch<'a> {
     pub clock: Clock,
 }
 
-impl FourLanes for Batch<'_> {
-    /// The largest overlap over the smaller radius; 1.
+impl EightLanes for Batch<'_> {
+    /// The largest overlap beyond [`LARGEST_OVERLAP`]; m.
     type Output = f64;
 
     #[inline(always)]
-    fn run<R: FourNumbers>(self, zero: R) -> f64 {
+    fn run<R: EightNumbers>(self, zero: R) -> f64 {
         let mut batch = self;
         let mut deepest = zero;
-        let mut meetings = [Meeting::all(zero); CHUNK];
-        let mut given = [[Lanes::ZERO; 3]; CHUNK];
-        let mut found = [Normal::all(Lanes::ZERO); CHUNK];
-        let groups = batch.pairs.len().div_ceil(LANES);
-        let step = batch.clock.step;
+        let mut meetings = Aligned([Meeting::all(zero); CHUNK]);
+        let mut given = Aligned([[Lanes::ZERO; 3]; CHUNK]);
+        let mut found = Aligned([Normal::all(Lanes::ZERO); CHUNK]);
+        let groups = batch.pairs.len().div_ceil(EIGHT);
+        let (step, rolls) = (batch.clock.step, batch.surface.rolls());
         for first in (0..groups).step_by(CHUNK) {
             let count = CHUNK.min(groups - first);
-            batch.prefetch(first + CHUNK);
             for own in 0..count {
-                let meeting = meet(batch.bodies, batch.pairs_of(first + own), step, zero);
+                let pairs = batch.pairs_of(first + own);
+                let meeting = meet(batch.bodies, pairs, (step, rolls), zero);
                 let touch = &meeting.touch;
-                deepest = deepest.max(touch.displacement / meeting.smaller);
-                given[own] = batch.store.given(first + own, touch, zero);
-                meetings[own] = meeting;
+                deepest = deepest.max(touch.displacement - meeting.smaller * LARGEST_OVERLAP);
+                given.0[own] = batch.store.given(first + own, touch, zero);
+                meetings.0[own] = meeting;
             }
-            let (given, found) = (&given[..count], &mut found[..count]);
+            let (given, found) = (&given.0[..count], &mut found.0[..count]);
             batch.store.normal(batch.surface, first, given, found);
             for own in 0..count {
-                batch.store.prefetch(first + own + AHEAD);
-                batch.push(first + own, &meetings[own], &found[own], zero);
+                batch.push(first + own, &meetings.0[own], &found[own], zero);
             }
         }
         batch.parting.reverse();
@@ -77,94 +74,68 @@ impl FourLanes for Batch<'_> {
 impl Batch<'_> {
     /// The bodies of a group of contacts; the last group is filled up with its last.
     #[inline(always)]
-    fn pairs_of(&self, group: usize) -> [[u32; 2]; LANES] {
-        let start = group * LANES;
+    fn pairs_of(&self, group: usize) -> [[u32; 2]; EIGHT] {
+        let start = group * EIGHT;
         let last = self.pairs.len() - 1;
-        [
-            self.pairs[start].bodies,
-            self.pairs[(start + 1).min(last)].bodies,
-            self.pairs[(start + 2).min(last)].bodies,
-            self.pairs[(start + 3).min(last)].bodies,
-        ]
-    }
-
-    /// Asks for the memory of the bodies of the next groups, and of what is to push them.
-    #[inline(always)]
-    fn prefetch(&self, first: usize) {
-        let later = self.pairs.iter().skip(first * LANES);
-        for Pair { bodies, out } in later.take(CHUNK * LANES) {
-            for body in bodies {
-                prefetch(&self.bodies.place[*body as usize]);
-                prefetch(&self.bodies.motion[*body as usize]);
-            }
-            if let Some(out) = self.outs.get(*out as usize) {
-                prefetch(out);
-            }
+        let mut pairs = [self.pairs[start].bodies; EIGHT];
+        for lane in 1..EIGHT {
+            pairs[lane] = self.pairs[(start + lane).min(last)].bodies;
         }
+        pairs
     }
 
     /// Forces of a group, to those whom they push.
     #[inline(always)]
-    fn push<R: FourNumbers>(
+    fn push<R: EightNumbers>(
         &mut self,
         group: usize,
         meeting: &Meeting<R>,
-        found: &Normal<Four>,
+        found: &Normal<Eight>,
         zero: R,
     ) {
-        let start = group * LANES;
-        let count = LANES.min(self.pairs.len() - start);
+        let start = group * EIGHT;
+        let count = EIGHT.min(self.pairs.len() - start);
         let touch = &meeting.touch;
         let Lanes(overlap) = touch.displacement.plain();
-        let parted = [
-            overlap[0] <= 0.0,
-            overlap[1] <= 0.0,
-            overlap[2] <= 0.0,
-            overlap[3] <= 0.0,
-        ];
-        let together = parted == [false; LANES];
+        let mut parted = [false; EIGHT];
+        for lane in 0..EIGHT {
+            parted[lane] = overlap[lane] <= 0.0;
+        }
+        let together = parted == [false; EIGHT];
         let before = (!together).then(|| self.store.before(group));
         let work = (self.surface, self.clock);
         let reaction = self.store.react(group, touch, found, work, zero);
-        let near = loads(touch.normal, &reaction, meeting.near, 1.0, zero);
-        let far = loads(touch.normal, &reaction, meeting.far, -1.0, zero);
+        let Aligned(near) = &loads(touch.normal, &reaction, meeting.near, 1.0, zero);
+        let Aligned(far) = &loads(touch.normal, &reaction, meeting.far, -1.0, zero);
         if let Some(before) = before {
             self.store.restore(group, parted, &before);
             for lane in (0..count).filter(|lane| parted[*lane]) {
                 self.parting.push((start + lane) as u32);
             }
         }
-        let Lanes(turned) = reaction.turned.plain();
-        for lane in 0..count {
+        if reaction.turned.any_above_zero() {
+            let Lanes(turned) = reaction.turned.plain();
+            for lane in (0..count).filter(|lane| !parted[*lane] && turned[*lane] > 0.0) {
+                self.turning.push(((start + lane) as u32, overlap[lane]));
+            }
+        }
+        for (lane, pair) in self.pairs[start..start + count].iter().enumerate() {
             if !together && parted[lane] {
                 continue;
             }
-            if turned[lane] > 0.0 {
-                self.turning.push(((start + lane) as u32, overlap[lane]));
-            }
-            let Pair { bodies, out } = self.pairs[start + lane];
+            let Pair { bodies, out } = *pair;
             let [first, second] = bodies;
-            add_load(
-                &mut self.loads[first as usize],
-                &near.0[lane],
-                &near.1[lane],
-            );
+            add_load(&mut self.loads[first as usize], near[lane]);
             // Second bodies stand behind.
             match self.loads.get_mut(second as usize) {
-                Some(load) => add_load(load, &far.0[lane], &far.1[lane]),
-                None => put(&mut self.outs[out as usize], &far.0[lane], &far.1[lane]),
+                Some(load) => add_load(load, far[lane]),
+                None => self.outs[out as usize].0 = far[lane].plain().0,
             }
         }
     }
 }
 
-#[inline(always)]
-fn put(to: &mut Load, force: &Four, moment: &Four) {
-    to[..LANES].copy_from_slice(&force.0);
-    to[LANES..].copy_from_slice(&moment.0);
-}
-
-/// Where four pairs touch.
+/// Where eight pairs touch.
 #[derive(Clone, Copy)]
 struct Meeting<R> {
     touch: Touch<R>,
@@ -175,7 +146,7 @@ struct Meeting<R> {
     smaller: R,
 }
 
-impl<R: FourNumbers> Meeting<R> {
+impl<R: EightNumbers> Meeting<R> {
     fn all(zero: R) -> Self {
         Self {
             touch: Touch::all(zero),
@@ -188,23 +159,21 @@ impl<R: FourNumbers> Meeting<R> {
 
 /// Half a row.
 #[inline(always)]
-fn half(row: &Load, at: usize) -> Four {
+fn half(row: &Load, at: usize) -> Row {
     Lanes([row[at], row[at + 1], row[at + 2], row[at + 3]])
 }
 
 #[inline(always)]
-fn meet<R: FourNumbers>(
+fn meet<R: EightNumbers>(
     bodies: &BodiesFrom,
-    pairs: [[u32; 2]; LANES],
-    step: f64,
+    pairs: [[u32; 2]; EIGHT],
+    (step, rolls): (f64, bool),
     zero: R,
 ) -> Meeting<R> {
     let (places, motions) = (bodies.place, bodies.motion);
-    let i = [pairs[0][0], pairs[1][0], pairs[2][0], pairs[3][0]];
-    let j = [pairs[0][1], pairs[1][1], pairs[2][1], pairs[3][1]];
-    let mut rows = [[Lanes::ZERO; LANES]; 6];
-    for lane in 0..LANES {
-        let (a, b) = (i[lane] as usize, j[lane] as usize);
+    let mut rows = [[Row::ZERO; EIGHT]; 6];
+    for lane in 0..EIGHT {
+        let [a, b] = [pairs[lane][0] as usize, pairs[lane][1] as usize];
         rows[0][lane] = Lanes(places[a].0);
         rows[1][lane] = Lanes(places[b].0);
         let (u, w) = (&motions[a], &motions[b]);
@@ -244,7 +213,8 @@ fn meet<R: FourNumbers>(
             rate,
             slip,
             spin: [p[0] - q[0], p[1] - q[1], p[2] - q[2]],
-            radius: left * right / reach,
+            // Only what rolls has a use for it.
+            radius: if rolls { left * right / reach } else { zero },
         },
         near,
         far,

@@ -240,10 +240,12 @@ pub(crate) fn react<R: Real>(
     // How much of a step the force acts before now: half, except at first touch.
     let late = (-memory.normal).select(-memory.normal + -0.5, zero + 0.5);
     let before = memory.normal.max(zero);
-    // Where the force ended within the step.
-    let since = found.force / (found.force - before);
-    let ended = before.select(now - since * clock.step, peaks.ended);
-    peaks.ended = force.select(peaks.ended, ended);
+    if force.select(zero, before).any_above_zero() {
+        // Where the force ended within the step.
+        let since = found.force / (found.force - before);
+        let ended = before.select(now - since * clock.step, peaks.ended);
+        peaks.ended = force.select(peaks.ended, ended);
+    }
     memory.work = memory.work + (before * 0.5 + force * late) * rate * clock.step;
     memory.rate = rate;
     memory.normal = force;

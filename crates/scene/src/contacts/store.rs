@@ -1,20 +1,19 @@
-//! What contacts remember, four side by side.
+//! What contacts remember, eight side by side.
 
 use crate::annuli::Annuli;
 use crate::contacts::contact::{Over, Parcel, turn};
-use crate::contacts::law_column::{Four, Given, LawColumn, law_column};
+use crate::contacts::law_column::{Eight, Given, LawColumn, law_column};
 use crate::contacts::memory::{Memory, Peaks};
 use crate::contacts::pulse::Pulse;
 use crate::contacts::react::{Clock, Normal, Reaction, Remembered, Touch, given, react};
 use crate::event::Encounter;
 use crate::interaction::Interaction;
-use crate::line::Line;
+use crate::line::{Aligned, Line};
 use crate::vector::{Of, cross};
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
-use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
-use windfall_numerics::real_vector::{FourNumbers, LANES};
+use windfall_numerics::real_vector::{EIGHT, EightNumbers};
 
 /// No contact, body or entry.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -22,29 +21,29 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// Force (N) and moment (N m) on a body: 0 to 2 and 4 to 6.
 pub(crate) type Load = Line;
 
-/// Groups of four that are worked through at a time.
-pub(crate) const CHUNK: usize = 8;
+/// Groups of eight that are worked through at a time.
+pub(crate) const CHUNK: usize = 4;
 
-/// What every step needs of four contacts, in whole lines of a processor's memory: those that
+/// What every step needs of eight contacts, in whole lines of a processor's memory: those that
 /// every step writes, and those that few do.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 struct Quad {
-    history: Memory<Four>,
-    peaks: Peaks<Four>,
+    history: Memory<Eight>,
+    peaks: Peaks<Eight>,
     /// What radii multiply the median's force by; 1.
-    scale: Four,
+    scale: Eight,
 }
 
 /// Contacts under one law; what is needed in every step stands apart from the rest.
 pub(crate) struct Store {
     quads: Vec<Quad>,
     /// Elastic forces of the annuli of each group on the first bodies; N.
-    elastic: Vec<Of<Four>>,
+    elastic: Vec<Of<Eight>>,
     /// Annuli of a contact.
     annuli: usize,
     /// Moments against rolling on the first bodies, where anything acts against it; N m.
-    rolling: Vec<Of<Four>>,
+    rolling: Vec<Of<Eight>>,
     rolls: bool,
     laws: Box<dyn LawColumn>,
     encounters: Vec<Encounter>,
@@ -57,7 +56,7 @@ pub(crate) type Turning = (u32, f64);
 impl Store {
     /// No contacts yet of an interaction, with room for so many.
     pub fn new(surface: &Interaction, room: usize) -> Self {
-        let groups = room.div_ceil(LANES);
+        let groups = room.div_ceil(EIGHT);
         Self {
             quads: Vec::with_capacity(groups),
             elastic: Vec::with_capacity(groups * surface.annuli),
@@ -80,7 +79,7 @@ impl Store {
             return None;
         }
         let own = self.len();
-        if own.is_multiple_of(LANES) {
+        if own.is_multiple_of(EIGHT) {
             self.quads.push(Quad {
                 history: Memory::ZERO,
                 peaks: Peaks::ZERO,
@@ -104,7 +103,7 @@ impl Store {
     }
 
     pub(crate) fn parcel(&self, contact: usize) -> Parcel {
-        let (group, lane) = (contact / LANES, contact % LANES);
+        let (group, lane) = (contact / EIGHT, contact % EIGHT);
         let quad = &self.quads[group];
         Parcel {
             scale: quad.scale.0[lane],
@@ -112,7 +111,7 @@ impl Store {
             peaks: quad.peaks.lane(lane),
             annuli: self.annuli_of(contact),
             rolling: match self.rolling.get(group) {
-                Some(four) => four.map(|axis| axis.0[lane]),
+                Some(own) => own.map(|axis| axis.0[lane]),
                 None => [0.0; 3],
             },
             encounter: self.encounters[contact],
@@ -128,14 +127,14 @@ impl Store {
         self.laws.swap_remove(contact);
         self.encounters.swap_remove(contact);
         self.pulses.swap_remove(contact);
-        if last.is_multiple_of(LANES) {
+        if last.is_multiple_of(EIGHT) {
             self.quads.pop();
             self.rolling.pop();
             self.elastic.truncate(self.elastic.len() - self.annuli);
         }
     }
 
-    /// Where the annuli of a group of four stand.
+    /// Where the annuli of a group of eight stand.
     #[inline(always)]
     fn annuli(&self, group: usize) -> Range<usize> {
         group * self.annuli..(group + 1) * self.annuli
@@ -143,16 +142,16 @@ impl Store {
 
     fn annuli_of(&self, contact: usize) -> Annuli {
         let mut all = Annuli::default();
-        let four = &self.elastic[self.annuli(contact / LANES)];
-        for (own, four) in all.0.iter_mut().zip(four) {
-            *own = four.map(|axis| axis.0[contact % LANES]);
+        let lanes = &self.elastic[self.annuli(contact / EIGHT)];
+        for (own, lanes) in all.0.iter_mut().zip(lanes) {
+            *own = lanes.map(|axis| axis.0[contact % EIGHT]);
         }
         all
     }
 
     /// All but the encounter.
     fn put(&mut self, contact: usize, parcel: &Parcel) {
-        let (group, lane) = (contact / LANES, contact % LANES);
+        let (group, lane) = (contact / EIGHT, contact % EIGHT);
         let annuli = self.annuli(group);
         let quad = &mut self.quads[group];
         quad.history.put_lane(lane, &parcel.history);
@@ -160,24 +159,24 @@ impl Store {
         quad.scale.0[lane] = parcel.scale;
         let rolling = self.rolling.get_mut(group).zip(Some(&parcel.rolling));
         let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
-        for (four, own) in elastic.chain(rolling) {
+        for (lanes, own) in elastic.chain(rolling) {
             for axis in 0..3 {
-                four[axis].0[lane] = own[axis];
+                lanes[axis].0[lane] = own[axis];
             }
         }
     }
 
     /// What contacts of a group remember before a step.
-    pub(crate) fn before(&self, group: usize) -> [Parcel; LANES] {
+    pub(crate) fn before(&self, group: usize) -> [Parcel; EIGHT] {
         let last = self.len() - 1;
-        [0, 1, 2, 3].map(|lane| self.parcel((group * LANES + lane).min(last)))
+        std::array::from_fn(|lane| self.parcel((group * EIGHT + lane).min(last)))
     }
 
     /// Puts back what contacts of a group were before a step.
-    pub(crate) fn restore(&mut self, group: usize, lanes: [bool; LANES], before: &[Parcel; LANES]) {
-        for lane in (0..LANES).filter(|lane| lanes[*lane]) {
-            if group * LANES + lane < self.len() {
-                self.put(group * LANES + lane, &before[lane]);
+    pub(crate) fn restore(&mut self, group: usize, lanes: [bool; EIGHT], before: &[Parcel; EIGHT]) {
+        for lane in (0..EIGHT).filter(|lane| lanes[*lane]) {
+            if group * EIGHT + lane < self.len() {
+                self.put(group * EIGHT + lane, &before[lane]);
             }
         }
     }
@@ -186,7 +185,7 @@ impl Store {
     #[cold]
     pub(crate) fn turn(&mut self, (contact, displacement): Turning, clock: Clock) -> Option<Over> {
         let contact = contact as usize;
-        let (quad, lane) = (&mut self.quads[contact / LANES], contact % LANES);
+        let (quad, lane) = (&mut self.quads[contact / EIGHT], contact % EIGHT);
         let mut history = quad.history.lane(lane);
         let mut peaks = quad.peaks.lane(lane);
         let pulse = &mut self.pulses[contact];
@@ -208,18 +207,9 @@ impl Store {
         self.encounters[contact] = encounter.from(self.pulses[contact].rise.time);
     }
 
-    /// Asks for the memory of a group that is soon to be worked through.
+    /// Arguments of the law for a group of eight.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, group: usize) {
-        if let Some(quad) = self.quads.get(group) {
-            prefetch(quad);
-            self.elastic[self.annuli(group)].iter().for_each(prefetch);
-        }
-    }
-
-    /// Arguments of the law for a group of four.
-    #[inline(always)]
-    pub(crate) fn given<R: FourNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
+    pub(crate) fn given<R: EightNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
         let Quad { history, peaks, .. } = &self.quads[group];
         let peak = zero.with_plain(peaks.displacement);
         zero.each_plain(given(touch, zero.with_plain(history.rate), peak))
@@ -231,21 +221,21 @@ impl Store {
         surface: &Interaction,
         first: usize,
         given: &[Given],
-        found: &mut [Normal<Four>],
+        found: &mut [Normal<Eight>],
     ) {
         let median = surface.spread.is_none().then_some(&surface.law);
         self.laws.normal(median, first, given, found);
     }
 
-    /// Forces of a group of four, one step on.
+    /// Forces of a group of eight, one step on.
     ///
     /// * `found`: what the law says
     #[inline(always)]
-    pub(crate) fn react<R: FourNumbers>(
+    pub(crate) fn react<R: EightNumbers>(
         &mut self,
         group: usize,
         touch: &Touch<R>,
-        found: &Normal<Four>,
+        found: &Normal<Eight>,
         (surface, clock): (&Interaction, Clock),
         zero: R,
     ) -> Reaction<R> {
@@ -277,8 +267,7 @@ impl Store {
         };
         let reaction = react(found, surface, touch, clock, own);
         quad.history = memory.plain();
-        let Lanes(growth) = peaks.growth_from(&before).plain();
-        if growth.into_iter().any(|own| own > 0.0) {
+        if peaks.growth_from(&before).any_above_zero() {
             quad.peaks = peaks.plain();
         }
         if rolls {
@@ -288,36 +277,34 @@ impl Store {
     }
 }
 
-/// Forces and moments of four contacts as rows: on the first body, or on the second.
+/// Loads of eight contacts: on the first bodies, or on the second.
 ///
 /// * `arm`: from the body's centre to the contact; m
 /// * `sign`: of the force on it
 #[inline(always)]
-pub(crate) fn loads<R: FourNumbers>(
+pub(crate) fn loads<R: EightNumbers>(
     normal: Of<R>,
     reaction: &Reaction<R>,
     arm: R,
     sign: f64,
     zero: R,
-) -> ([Four; LANES], [Four; LANES]) {
+) -> Aligned<[R; EIGHT]> {
     let (force, twist) = (reaction.force, cross(normal, reaction.force));
     let rolling = reaction.rolling;
-    (
-        R::rows([force[0] * sign, force[1] * sign, force[2] * sign, zero]),
-        R::rows([
+    Aligned(R::rows(
+        [force[0] * sign, force[1] * sign, force[2] * sign, zero],
+        [
             twist[0] * arm + rolling[0] * sign,
             twist[1] * arm + rolling[1] * sign,
             twist[2] * arm + rolling[2] * sign,
             zero,
-        ]),
-    )
+        ],
+    ))
 }
 
-/// Adds a row of forces and one of moments.
+/// Adds one of [`loads`].
 #[inline(always)]
-pub(crate) fn add_load(to: &mut Load, force: &Four, moment: &Four) {
-    for axis in 0..LANES {
-        to[axis] += force.0[axis];
-        to[LANES + axis] += moment.0[axis];
-    }
+pub(crate) fn add_load<R: EightNumbers>(to: &mut Load, own: R) {
+    let Lanes(sum) = (own.with_plain(Lanes(to.0)) + own).plain();
+    to.0 = sum;
 }

@@ -1,20 +1,21 @@
-//! Forces of walls on the fruit that touch them, four at a time.
+//! Forces of walls on the fruit that touch them, eight at a time.
 
 use crate::contacts::contact::Parcel;
-use crate::contacts::law_column::Four;
+use crate::contacts::law_column::Eight;
 use crate::contacts::react::{Clock, Normal, Touch};
 use crate::contacts::store::{CHUNK, Load, NONE, Store, Turning, add_load, loads};
 use crate::event::{Encounter, Event, Partner};
 use crate::interaction::Interaction;
+use crate::line::Aligned;
 use crate::vector::Vector;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::real::Lanes;
-use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
+use windfall_numerics::real_vector::{EIGHT, EightLanes, EightNumbers, Row, with_eight_lanes};
 
 /// How a fruit and a wall meet, in rows: normal and displacement, slip and R*, spin and distance
 /// of the contact from the centre, velocity of the wall and rate of the displacement.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WallMeeting([Four; 4]);
+pub(crate) struct WallMeeting([Row; 4]);
 
 impl WallMeeting {
     /// * `arm`: from the centre to the wall; m
@@ -69,7 +70,7 @@ pub(crate) struct WallContacts {
     holders: Vec<[u32; 2]>,
     meetings: Vec<WallMeeting>,
     /// Force on the fruit a step ago; N.
-    forces: Vec<Four>,
+    forces: Vec<Row>,
     /// Those whose force leaves its band in the present step.
     turning: Vec<Turning>,
 }
@@ -150,7 +151,7 @@ impl WallContacts {
         if self.holders.is_empty() {
             return 0.0;
         }
-        with_four_lanes(Batch {
+        with_eight_lanes(Batch {
             contacts: self,
             loads,
             surface,
@@ -183,11 +184,11 @@ impl WallContacts {
 
     /// How a group meets walls; the last group is filled up with its last contact.
     #[inline(always)]
-    fn meet<R: FourNumbers>(&self, group: usize, zero: R) -> Meeting<R> {
+    fn meet<R: EightNumbers>(&self, group: usize, zero: R) -> Meeting<R> {
         let last = self.meetings.len() - 1;
-        let mut rows = [[Lanes::ZERO; LANES]; 4];
-        for lane in 0..LANES {
-            let own = &self.meetings[(group * LANES + lane).min(last)];
+        let mut rows = [[Row::ZERO; EIGHT]; 4];
+        for lane in 0..EIGHT {
+            let own = &self.meetings[(group * EIGHT + lane).min(last)];
             for row in 0..4 {
                 rows[row][lane] = own.0[row];
             }
@@ -217,7 +218,7 @@ struct Batch<'a> {
     clock: Clock,
 }
 
-/// How four fruit meet walls.
+/// How eight fruit meet walls.
 #[derive(Clone, Copy)]
 struct Meeting<R> {
     touch: Touch<R>,
@@ -227,12 +228,12 @@ struct Meeting<R> {
     wall: [R; 3],
 }
 
-impl FourLanes for Batch<'_> {
+impl EightLanes for Batch<'_> {
     /// Work that walls did; J.
     type Output = f64;
 
     #[inline(always)]
-    fn run<R: FourNumbers>(self, zero: R) -> f64 {
+    fn run<R: EightNumbers>(self, zero: R) -> f64 {
         let mut batch = self;
         let mut meetings = [Meeting {
             touch: Touch::all(zero),
@@ -242,7 +243,7 @@ impl FourLanes for Batch<'_> {
         let mut given = [[Lanes::ZERO; 3]; CHUNK];
         let mut found = [Normal::all(Lanes::ZERO); CHUNK];
         let mut work = zero;
-        let groups = batch.contacts.holders.len().div_ceil(LANES);
+        let groups = batch.contacts.holders.len().div_ceil(EIGHT);
         for first in (0..groups).step_by(CHUNK) {
             let count = CHUNK.min(groups - first);
             for own in 0..count {
@@ -267,11 +268,11 @@ impl FourLanes for Batch<'_> {
 impl Batch<'_> {
     /// Forces of a group on its bodies; the work of walls, J.
     #[inline(always)]
-    fn push<R: FourNumbers>(
+    fn push<R: EightNumbers>(
         &mut self,
         group: usize,
         meeting: &Meeting<R>,
-        found: &Normal<Four>,
+        found: &Normal<Eight>,
         zero: R,
     ) -> R {
         let WallContacts {
@@ -282,12 +283,12 @@ impl Batch<'_> {
             ..
         } = &mut *self.contacts;
         let Meeting { touch, arm, wall } = meeting;
-        let start = group * LANES;
-        let count = LANES.min(holders.len() - start);
+        let start = group * EIGHT;
+        let count = EIGHT.min(holders.len() - start);
         let on = (self.surface, self.clock);
         let reaction = store.react(group, touch, found, on, zero);
-        let (force, moment) = loads(touch.normal, &reaction, *arm, 1.0, zero);
-        let mut before = [Lanes::ZERO; LANES];
+        let Aligned(acting) = loads(touch.normal, &reaction, *arm, 1.0, zero);
+        let mut before = [Row::ZERO; EIGHT];
         before[..count].copy_from_slice(&forces[start..start + count]);
         let before = zero.columns(before);
         let mut power = zero;
@@ -301,9 +302,10 @@ impl Batch<'_> {
             if turned[lane] > 0.0 {
                 turning.push(((start + lane) as u32, depth[lane]));
             }
-            forces[start + lane] = force[lane];
+            let Lanes([x, y, z, ..]) = acting[lane].plain();
+            forces[start + lane] = Lanes([x, y, z, 0.0]);
             let body = holders[start + lane][0] as usize;
-            add_load(&mut self.loads[body], &force[lane], &moment[lane]);
+            add_load(&mut self.loads[body], acting[lane]);
         }
         zero.with_plain(Lanes(work))
     }

@@ -1,6 +1,5 @@
 //! How clumps of spheres move.
 
-use crate::contacts::law_column::Four;
 use crate::contacts::neighbours::Bodies;
 use crate::contacts::store::Load;
 use crate::line::{HalfLine, Line};
@@ -12,6 +11,7 @@ use crate::vector::{
 };
 use std::f64::consts::PI;
 use windfall_numerics::real::Lanes;
+use windfall_numerics::real_vector::Row;
 
 /// A clump in a scene that runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub(crate) struct Around<'a> {
     pub gravity: Vector,
     pub air: Option<Air>,
     pub step: f64,
-    pub listed: &'a [Four],
+    pub listed: &'a [Row],
     pub loads: &'a [Load],
 }
 

@@ -1,10 +1,9 @@
 //! Forces on each body added up, and where they take it.
 
 use crate::contacts::contact::{Moment, Outcome};
-use crate::contacts::law_column::Four;
 use crate::contacts::neighbours::PairTable;
 use crate::contacts::react::Touch;
-use crate::contacts::store::Load;
+use crate::contacts::store::{Load, add_load};
 use crate::contacts::wall_contacts::{Around, Body, NearPart, WallState, aim, met_wall};
 use crate::contacts::wall_forces::WallContacts;
 use crate::error::Error;
@@ -13,15 +12,13 @@ use crate::interaction::Interaction;
 use crate::line::{HalfLine, Line};
 use crate::scene::Scene;
 use crate::vector::{Rotation, Vector, dot, length, plus_scaled, turned_on};
-use windfall_numerics::prefetch::prefetch;
 use windfall_numerics::real::Lanes;
-use windfall_numerics::real_vector::{FourLanes, FourNumbers, LANES, with_four_lanes};
+use windfall_numerics::real_vector::{
+    EIGHT, EightLanes, EightNumbers, LANES, Row, with_eight_lanes,
+};
 
 /// Way in one step over the radius above which contacts are missed; 1.
 const LONGEST_WAY: f64 = 0.2;
-
-/// How many loads ahead memory is prefetched.
-const AHEAD: usize = 16;
 
 /// Inverse mass (and inertia) of a sphere that moves with its clump.
 pub(crate) const PART_OF_CLUMP: f64 = 0.0;
@@ -66,7 +63,7 @@ pub(crate) struct Gather<'a> {
     pub clumps: (&'a [u32], &'a [Vector]),
     /// Of contacts of clumps on each body, if there are clumps.
     pub clump_loads: &'a [Load],
-    pub listed: &'a [Four],
+    pub listed: &'a [Row],
     /// Fruit that another rank follows, by number: see `Simulation`.
     pub foreign: &'a [bool],
     pub with_energy: bool,
@@ -95,11 +92,14 @@ impl Gather<'_> {
             sums.walls += own.advance(block.loads, surface, now.clock);
         }
         self.turn(&mut block, now, &mut outcome);
-        self.take_in(&mut block);
-        let of_clumps = self.clump_loads.iter().skip(block.start);
-        for (load, own) in block.loads.iter_mut().zip(of_clumps) {
-            add(load, own);
-        }
+        let (incoming, start) = self.table.incoming(block.start, block.loads.len());
+        with_eight_lanes(TakeIn {
+            incoming,
+            start,
+            out: self.out,
+            clumps: self.clump_loads.get(block.start..).unwrap_or_default(),
+            loads: &mut *block.loads,
+        });
         let step = now.clock.step;
         if let Some(air) = self.scene.air {
             for own in 0..block.loads.len() {
@@ -124,7 +124,7 @@ impl Gather<'_> {
             return (outcome, sums);
         }
         let bodies = block.place.len();
-        let furthest = with_four_lanes(Move {
+        let furthest = with_eight_lanes(Move {
             place: &mut *block.place,
             motion: &mut *block.motion,
             turn: &mut *block.turn,
@@ -148,21 +148,6 @@ impl Gather<'_> {
     fn is_foreign(&self, body: usize) -> bool {
         let foreign = self.foreign.get(self.bodies.0[body] as usize);
         foreign.is_some_and(|own| *own)
-    }
-
-    /// What pairs of other blocks do to the bodies of the block.
-    fn take_in(&self, block: &mut BlockBodies) {
-        let out = |number: u32| &self.out[number as usize];
-        let bodies = block.start..block.start + block.loads.len();
-        let mut later = self.table.incoming(bodies.clone()).iter().skip(AHEAD);
-        for (load, body) in block.loads.iter_mut().zip(bodies) {
-            for &number in self.table.incoming(body..body + 1) {
-                if let Some(number) = later.next() {
-                    prefetch(out(*number));
-                }
-                add(load, out(number));
-            }
-        }
     }
 
     /// Where bodies of the block touch walls.
@@ -266,9 +251,36 @@ impl Gather<'_> {
     }
 }
 
-fn add(to: &mut Load, own: &Load) {
-    for at in 0..to.len() {
-        to[at] += own[at];
+/// What pairs of other blocks, and clumps, do to the bodies of a block.
+struct TakeIn<'a> {
+    /// Numbers of those pairs in which each body is second, and where those of each begin.
+    incoming: &'a [u32],
+    start: &'a [u32],
+    out: &'a [Load],
+    /// Of clumps on the bodies from the first of the block on, if there are clumps.
+    clumps: &'a [Load],
+    loads: &'a mut [Load],
+}
+
+impl EightLanes for TakeIn<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: EightNumbers>(self, zero: R) {
+        for (load, own) in self.loads.iter_mut().zip(self.start.windows(2)) {
+            let numbers = &self.incoming[own[0] as usize..own[1] as usize];
+            if numbers.is_empty() {
+                continue;
+            }
+            let mut sum = zero.with_plain(Lanes(load.0));
+            for number in numbers {
+                sum = sum + zero.with_plain(Lanes(self.out[*number as usize].0));
+            }
+            load.0 = sum.plain().0;
+        }
+        for (load, own) in self.loads.iter_mut().zip(self.clumps) {
+            add_load(load, zero.with_plain(Lanes(own.0)));
+        }
     }
 }
 
@@ -278,7 +290,7 @@ struct Move<'a> {
     motion: &'a mut [Line],
     turn: &'a mut [Rotation],
     loads: &'a [Load],
-    listed: &'a [Four],
+    listed: &'a [Row],
     gravity: Vector,
     step: f64,
 }
@@ -292,11 +304,11 @@ struct Furthest {
     share: f64,
 }
 
-impl FourLanes for Move<'_> {
+impl EightLanes for Move<'_> {
     type Output = Furthest;
 
     #[inline(always)]
-    fn run<R: FourNumbers>(self, zero: R) -> Furthest {
+    fn run<R: EightNumbers>(self, zero: R) -> Furthest {
         let step = self.step;
         let gravity = zero.constant(step);
         let gravity = [
@@ -307,11 +319,11 @@ impl FourLanes for Move<'_> {
         let (mut way, mut second) = (zero, zero);
         let (mut share, mut all) = (zero, zero);
         let count = self.place.len();
-        for start in (0..count).step_by(LANES) {
-            let lanes = LANES.min(count - start);
+        for start in (0..count).step_by(EIGHT) {
+            let lanes = EIGHT.min(count - start);
             // The last few are filled up with the last of them.
-            let mut rows = [[Lanes::ZERO; LANES]; 7];
-            for lane in 0..LANES {
+            let mut rows = [[Row::ZERO; EIGHT]; 7];
+            for lane in 0..EIGHT {
                 let own = start + lane.min(lanes - 1);
                 let (m, load) = (&self.motion[own], &self.loads[own]);
                 rows[0][lane] = Lanes(self.place[own].0);
@@ -342,14 +354,13 @@ impl FourLanes for Move<'_> {
             share = share.max(own);
             // A largest one does not show what is no number.
             all = all + own;
-            let [places, velocities] = [R::rows(place), R::rows(velocity)];
-            let [spins, turns] = [R::rows(spin), R::rows(turn)];
+            let (stands, moves) = (R::rows(place, turn), R::rows(velocity, spin));
             for lane in 0..lanes {
                 let own = start + lane;
-                self.place[own] = HalfLine(places[lane].0);
-                self.motion[own][..LANES].copy_from_slice(&velocities[lane].0);
-                self.motion[own][LANES..].copy_from_slice(&spins[lane].0);
-                self.turn[own] = turns[lane].0;
+                let Lanes(row) = stands[lane].plain();
+                self.place[own].copy_from_slice(&row[..LANES]);
+                self.turn[own].copy_from_slice(&row[LANES..]);
+                *self.motion[own] = moves[lane].plain().0;
             }
         }
         let Lanes(all) = all.plain();

@@ -2,7 +2,6 @@
 
 use crate::contacts::clump_contacts::{self, ClumpContacts};
 use crate::contacts::contact::{Moment, Outcome, Over, lasting};
-use crate::contacts::law_column::Four;
 use crate::contacts::neighbours::{Bodies, PairTable};
 use crate::contacts::pair_contacts::PairContacts;
 use crate::contacts::react::{Clock, LOOK};
@@ -19,6 +18,7 @@ use crate::motion::gather::{Loads, Sums, Swept};
 use crate::scene::Scene;
 use crate::shape::clump::Clump;
 use crate::vector::{Rotation, Vector};
+use windfall_numerics::real_vector::Row;
 
 /// A scene that runs.
 ///
@@ -49,7 +49,7 @@ pub struct Simulation {
     pub(crate) near: Vec<NearPart>,
     pub(crate) near_start: Vec<u32>,
     /// Places when the list was made; m.
-    pub(crate) listed: Vec<Four>,
+    pub(crate) listed: Vec<Row>,
     /// The two largest ways since then of the bodies of each block; m.
     pub(crate) ways: Vec<[f64; 2]>,
     /// Largest way of all, how far two may have come together, and largest way of walls; m.
