@@ -102,6 +102,9 @@ impl Parcel {
     }
 }
 
+/// Overlap over the smaller radius above which a law of two spheres means nothing.
+pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
+
 /// Why a contact with so much overlap means nothing.
 pub(crate) fn too_deep(time: f64, fruit: u32, partner: String, overlap: f64, radius: f64) -> Error {
     match overlap.is_finite() {

@@ -56,9 +56,6 @@ struct Awake {
 /// How many entries ahead memory is prefetched.
 const AHEAD: usize = 16;
 
-/// Overlap over the smaller radius above which a law of two spheres means nothing.
-pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
-
 impl PairContacts {
     /// No contacts yet of an interaction, with room for so many, and for so many entries.
     pub fn new(surface: &Interaction, room: usize, entries: usize) -> Self {
