@@ -142,12 +142,14 @@ fn slide_over<R: Real>(
         let limit = shear.limit * loads[own];
         let square = dot(sticking, sticking);
         let beyond = square - limit * limit;
-        let capped = scaled(sticking, beyond.select(limit / square.sqrt(), one));
-        whole = add(whole, capped);
-        let mut kept = elastic;
-        for axis in 0..3 {
-            kept[axis] = beyond.select(capped[axis] + slip[axis] * damping, elastic[axis]);
+        let (mut borne, mut kept) = (sticking, elastic);
+        if beyond.any_above_zero() {
+            borne = scaled(sticking, beyond.select(limit / square.sqrt(), one));
+            for axis in 0..3 {
+                kept[axis] = beyond.select(borne[axis] + slip[axis] * damping, elastic[axis]);
+            }
         }
+        whole = add(whole, borne);
         annuli[own] = zero.each_plain(kept);
         (here, flown) = (next, inward);
     }
