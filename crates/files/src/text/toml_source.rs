@@ -413,18 +413,22 @@ fn key_unknown(source: &TomlSource, span: &Range<usize>, message: &str, place: P
 }
 
 /// What serde calls a type, and what a person would.
-const TYPES: [(&str, &str); 7] = [
+const TYPES: [(&str, &str); 9] = [
     (
         "expected a sequence",
         "expected a list in brackets, [\"…\", \"…\"]",
     ),
     ("expected f64", "expected a number without quotes"),
-    ("expected u64", "expected a whole number"),
+    ("expected u64", WHOLE),
+    ("expected u32", WHOLE),
+    ("expected usize", WHOLE),
     ("expected i64", "expected a whole number"),
     ("expected a string", "expected a text in quotes"),
     ("expected a boolean", "expected true or false"),
     ("expected a map", "expected a table"),
 ];
+
+const WHOLE: &str = "expected a whole number, 0 or more";
 
 /// The reader's message with the line that it is about.
 fn syntax_message(source: &TomlSource, span: &Range<usize>, message: &str) -> String {
@@ -433,7 +437,7 @@ fn syntax_message(source: &TomlSource, span: &Range<usize>, message: &str) -> St
         .map_or(0, |at| at + 1);
     let line = source.text[start..].lines().next().unwrap_or_default();
     let mut message = message.trim().replace('\n', "; ");
-    if message.starts_with("invalid type") {
+    if message.starts_with("invalid type") || message.starts_with("invalid value") {
         for (own, plain) in TYPES {
             message = message.replace(own, plain);
         }

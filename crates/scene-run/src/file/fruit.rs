@@ -44,6 +44,13 @@ pub fn fruit_of(
     let example = "density = \"840 kg/m^3\"";
     let density = table.above_zero(&file.density, "density", "kg/m^3")?;
     let density = density.ok_or_else(|| table.lacks("density", "density", example))?;
+    if let (Some(given), false) = (&file.density, DENSITIES.contains(&density)) {
+        let problem = format!(
+            "nothing that is handled has {density} kg/m^3: water has 1000, an apple about 840; \
+             1 g/cm^3 is 1000 kg/m^3"
+        );
+        return Err(table.refused(&given.span(), "density", given.get_ref(), problem));
+    }
     let kind = FruitKind {
         material: own,
         count: *count.get_ref(),
@@ -56,6 +63,9 @@ pub fn fruit_of(
     let name = file.name.as_ref().map(Spanned::get_ref);
     Ok((name.unwrap_or(&materials[own]).clone(), kind))
 }
+
+/// Densities between foam and the heaviest metal; kg/m³.
+const DENSITIES: std::ops::RangeInclusive<f64> = 10.0..=25_000.0;
 
 /// Spheres that make up an ovate fruit, where the file does not say how many: a fruit of
 /// 100 mm by 60 mm then lacks 0.9 mm of its spheroid at most.

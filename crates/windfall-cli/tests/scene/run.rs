@@ -142,6 +142,14 @@ fn rejects_scenes_that_cannot_be_with_their_line() {
             &["parallel"],
         ),
         (
+            ("count = 100", "count = -3"),
+            &["line", "expected a whole number, 0 or more in: count = -3"],
+        ),
+        (
+            ("density = \"840 kg/m^3\"", "density = \"0.84 kg/m^3\""),
+            &["line", "density=\"0.84 kg/m^3\"", "water has 1000"],
+        ),
+        (
             ("diameter = \"75 mm\"", "diameter = \"75 kg\""),
             &["75 kg", "line"],
         ),
