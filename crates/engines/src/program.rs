@@ -311,7 +311,7 @@ pub(crate) fn last_lines(text: &str) -> String {
     let lines: Vec<&str> = text
         .lines()
         .map(str::trim)
-        .filter(|own| !own.is_empty())
+        .filter(|own| own.contains(char::is_alphanumeric))
         .collect();
     let error = lines.iter().position(|own| own.contains("ERROR"));
     let from = error.unwrap_or(lines.len().saturating_sub(SHOWN));

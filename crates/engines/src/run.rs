@@ -5,6 +5,7 @@ use crate::lammps::deck::lammps_deck;
 use crate::liggghts::deck::liggghts_deck;
 use crate::motion::Frames;
 use crate::program::{Program, find_program, wrong};
+use crate::ranks::checkpoint::{Kept, check_states, parts_with_deck, read_kept};
 use crate::ranks::library::{find_library, unusable};
 use crate::ranks::merge::{Pulses, start_ranks};
 use crate::ranks::part::{part_name, scene_of};
@@ -21,9 +22,10 @@ use windfall_files::write_file::write_whole;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::{ScenePlan, read_scene};
 use windfall_scene_run::file_error::make_directory;
-use windfall_scene_run::run::advance::{Mover, SceneStart};
-use windfall_scene_run::run::checkpoint::Parts;
+use windfall_scene_run::run::advance::Mover;
+use windfall_scene_run::run::checkpoint::{ENGINE_FOLDER, Parts};
 use windfall_scene_run::run::outcome::{SceneOutcome, StepOutcome};
+use windfall_scene_run::run::stopped::{Keeper, SceneStart, goes_on};
 use windfall_scene_run::run::workflow::{
     Moved, SceneRequest, directory_of, run_moved, run_scene, time_step,
 };
@@ -220,10 +222,11 @@ pub fn run_on_engine(
     }
     let mut ready = ready(path, own.engine, &own.deck)?;
     let out = directory_of(path, request);
-    if request.start == SceneStart::Resume {
-        let problem = "a run on it cannot go on from a checkpoint: begin anew with --restart";
-        return Err(wrong(own.engine, problem.to_owned()));
+    let outside = own.frames.is_some() || own.pulses.is_some() || own.engine_frames;
+    if request.start == SceneStart::Resume && (own.engine != Engine::Lammps || outside) {
+        return Err(wrong(own.engine, UNRESUMED.to_owned()));
     }
+    let resumes = goes_on(&out, request.start, Keeper::Engine)?;
     let steps = ready.frame_steps;
     let steps_time = steps as f64 * ready.plan.scene.time_step;
     if let Some(probe) = ready.plan.sensors.probe() {
@@ -237,7 +240,7 @@ pub fn run_on_engine(
     ready.plan.sensors.check_step(steps_time)?;
     // Between two frames is one step of who follows.
     ready.plan.scene.time_step = steps_time;
-    let (mut mover, engine) = mover_of(path, own, &mut ready, &out)?;
+    let (mut mover, engine) = mover_of((path, resumes), own, &mut ready, &out)?;
     let moved = Moved {
         mover: &mut *mover,
         step: ready.step,
@@ -247,9 +250,13 @@ pub fn run_on_engine(
     };
     let plan = &ready.plan;
     on_threads(request.threads, || {
-        Ok(run_moved(plan, moved, &out, request.start, progress)?.outcome)
+        // What was stopped there is dealt with, and the engine goes on with it or without.
+        Ok(run_moved(plan, moved, &out, SceneStart::Restart, progress)?.outcome)
     })
 }
+
+/// Why a run does not go on from a checkpoint.
+const UNRESUMED: &str = "a run on it cannot go on from a checkpoint: begin anew with --restart";
 
 /// Refuses options of another engine: a run without them would not be the one that was asked for.
 fn check_options(own: &EngineRequest) -> Result<(), Error> {
@@ -282,9 +289,10 @@ fn check_options(own: &EngineRequest) -> Result<(), Error> {
 /// What moves the fruit, and its name with its version.
 ///
 /// * `ready`: with the time between frames as its time step
+/// * `resumes`: whether it goes on from a checkpoint
 /// * `out`: where the results go
 fn mover_of(
-    path: &Path,
+    (path, resumes): (&Path, bool),
     own: &EngineRequest,
     ready: &mut Ready,
     out: &Path,
@@ -307,25 +315,39 @@ fn mover_of(
     }
     let program = find_program(own.engine, own.engine_program.as_deref())?;
     let launch = program.launch(own.ranks.max(1))?;
-    let directory = out.join("engine");
-    write_deck(&ready.deck, &directory)?;
+    let directory = out.join(ENGINE_FOLDER);
     let ranks = match own.ranks {
         0 | 1 => String::new(),
         ranks => format!(", {ranks} ranks"),
     };
     let name = format!("{title} {}{ranks}", program.version);
-    if let Some(library) = inside(&program, own, ready)? {
+    if let Some(library) = inside(&program, (own, resumes), ready)? {
         let windfall = own.windfall.clone().unwrap_or_default();
+        let kept = match resumes {
+            true => Some(kept_of(&directory, &program, ready)?),
+            false => None,
+        };
+        write_deck(&ready.deck, &directory)?;
         let task = (path, windfall.as_path(), library.as_path());
-        let running = start_ranks((&program, &launch), task, &directory)?;
-        let counts = (Some(own.ranks.max(1)), steps);
+        let running = start_ranks((&program, &launch), task, (&directory, kept.as_ref()))?;
         let scene = std::mem::take(&mut ready.scene);
+        let before = kept.map_or(Vec::new(), |own| own.parts);
+        let counts = (Some((own.ranks.max(1), before)), steps);
         let pulses = Pulses::new((&directory, Some(running)), &ready.plan, scene, counts)?;
         return Ok((Box::new(pulses), name));
     }
+    write_deck(&ready.deck, &directory)?;
     let deck = (directory.as_path(), ready.deck.files[0].0.as_str());
     let frames = Frames::of_run((&program, &launch), deck, (fruit, steps))?;
     Ok((Box::new(frames), name))
+}
+
+/// The checkpoint from which a run goes on.
+fn kept_of(directory: &Path, program: &Program, ready: &Ready) -> Result<Kept, Error> {
+    let parts = parts_with_deck(&ready.scene, &ready.deck.files[0].1);
+    let kept = read_kept(directory, &parts, program.date())?;
+    check_states(directory, &kept)?;
+    Ok(kept)
 }
 
 /// Pulses that the ranks of an earlier run found.
@@ -367,10 +389,10 @@ fn outside(plan: &ScenePlan) -> Option<&'static str> {
 }
 
 /// The library with which contacts are found inside of the ranks of LAMMPS; none where that cannot be,
-/// with a finding that says why.
+/// with a finding that says why. A run that goes on from a checkpoint cannot do without.
 fn inside(
     program: &Program,
-    own: &EngineRequest,
+    (own, resumes): (&EngineRequest, bool),
     ready: &mut Ready,
 ) -> Result<Option<PathBuf>, Error> {
     let (Engine::Lammps, false, Some(windfall)) = (own.engine, own.engine_frames, &own.windfall)
@@ -384,7 +406,7 @@ fn inside(
     };
     match found {
         Ok(library) => Ok(Some(library)),
-        Err(problem) if given.is_some() => Err(unusable(program, &problem)),
+        Err(problem) if given.is_some() || resumes => Err(unusable(program, &problem)),
         Err(problem) => {
             let message = format!(
                 "contacts were found outside of LAMMPS's ranks, which takes longer: {problem}"

@@ -44,7 +44,10 @@ pub fn digest_file(path: &Path) -> Result<String, Error> {
 }
 
 /// [`digest_file`] of a file that is no input.
-pub(crate) fn digest_of_file(path: &Path) -> Result<String, Error> {
+///
+/// # Errors
+/// The file cannot be read.
+pub fn digest_of_file(path: &Path) -> Result<String, Error> {
     let failed = |source| Error::access(path, "read", source);
     let mut file = File::open(path).map_err(failed)?;
     let mut digest = Sha256::new();

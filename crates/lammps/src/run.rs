@@ -48,6 +48,8 @@ pub struct Library {
     has_error: unsafe extern "C" fn(Handle) -> c_int,
     error: unsafe extern "C" fn(Handle, *mut c_char, c_int) -> c_int,
     call_back: unsafe extern "C" fn(Handle, *const c_char, CallBack, *mut c_void),
+    variable: unsafe extern "C" fn(Handle, *const c_char, *const c_char) -> *mut c_void,
+    free: unsafe extern "C" fn(*mut c_void),
 }
 
 impl Library {
@@ -72,6 +74,8 @@ impl Library {
                 has_error: loaded.function(c"lammps_has_error")?,
                 error: loaded.function(c"lammps_get_last_error_message")?,
                 call_back: loaded.function(c"lammps_set_fix_external_callback")?,
+                variable: loaded.function(c"lammps_extract_variable")?,
+                free: loaded.function(c"lammps_free")?,
             })
         }
     }
@@ -131,6 +135,23 @@ impl Lammps {
     fn setting(&self, name: &CStr) -> c_int {
         // SAFETY: the handle is open, the name a C string.
         unsafe { (self.library.setting)(self.handle, name.as_ptr()) }
+    }
+
+    /// The value of a variable of the style equal; none where there is no such variable.
+    pub fn variable(&self, name: &CStr) -> Option<f64> {
+        // SAFETY: the handle is open, the name a C string; without a group it is a single number.
+        let found =
+            unsafe { (self.library.variable)(self.handle, name.as_ptr(), std::ptr::null()) };
+        let found: *mut c_double = found.cast();
+        if found.is_null() {
+            return None;
+        }
+        // SAFETY: it is the address of a number that was made for this call, and is given back once.
+        unsafe {
+            let value = *found;
+            (self.library.free)(found.cast());
+            Some(value)
+        }
     }
 
     /// Carries out commands, one a line.

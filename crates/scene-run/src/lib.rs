@@ -9,4 +9,4 @@ pub mod run;
 mod run_error;
 pub mod study;
 
-pub use run_error::stopped_scene;
+pub use run_error::{SceneRunError, stopped_scene};

@@ -17,6 +17,7 @@ pub enum SceneRunError {
         at_of(*.at), directory = directory.display()
     )]
     Unfinished {
+        /// Of its results.
         directory: PathBuf,
         /// Time of its checkpoint, and when the scene ends; s.
         at: Option<[f64; 2]>,
@@ -35,7 +36,19 @@ pub enum SceneRunError {
         "{directory} holds no run that was stopped; without --resume the scene begins anew",
         directory = directory.display()
     )]
-    NothingToResume { directory: PathBuf },
+    NothingToResume {
+        /// Of the results.
+        directory: PathBuf,
+    },
+    /// The stopped run is one of another engine.
+    #[error(
+        "{directory} holds a run that was stopped on another engine: go on with the --engine that it \
+         had, or begin anew with --restart", directory = directory.display()
+    )]
+    OtherEngine {
+        /// Of its results.
+        directory: PathBuf,
+    },
     /// The scene has changed.
     #[error(
         "{path}: the scene has changed since the run was stopped, and a run cannot go on with \
@@ -43,6 +56,7 @@ pub enum SceneRunError {
          --restart", path = path.display(), changed = changed.join(", ")
     )]
     Changed {
+        /// The checkpoint.
         path: PathBuf,
         /// What differs.
         changed: Vec<String>,
@@ -52,13 +66,23 @@ pub enum SceneRunError {
         "{path}: {problem}; the run cannot go on from there, and nothing was changed: put the file \
          back from a copy, or begin anew with --restart", path = path.display()
     )]
-    Damaged { path: PathBuf, problem: String },
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// Written by another windfall.
     #[error(
         "{path}: the checkpoint was written by windfall {version}, this is {VERSION}: go on with \
          that version, or begin anew with --restart", path = path.display()
     )]
-    Version { path: PathBuf, version: String },
+    Version {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Of that windfall.
+        version: String,
+    },
     /// The scene's results would mean nothing from there on.
     #[error("the scene was stopped: {0}")]
     Failed(windfall_scene::error::Error),
@@ -78,7 +102,9 @@ pub enum SceneRunError {
     /// A full disk, or a read-only directory.
     #[error("{path}: cannot write: {source}. {}", kept_of(*.kept), path = path.display())]
     Unwritable {
+        /// What cannot be written.
         path: PathBuf,
+        /// What the system says.
         source: std::io::Error,
         /// Time of the last checkpoint, where there is one; s.
         kept: Option<f64>,
@@ -105,7 +131,10 @@ impl Fault for SceneRunError {
     fn is_request(&self) -> bool {
         matches!(
             self,
-            Self::Unfinished { .. } | Self::NothingToResume { .. } | Self::Changed { .. }
+            Self::Unfinished { .. }
+                | Self::NothingToResume { .. }
+                | Self::OtherEngine { .. }
+                | Self::Changed { .. }
         )
     }
 }

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use windfall_scene_run::run::advance::SceneStart;
 use windfall_scene_run::run::outcome::SceneOutcome;
+use windfall_scene_run::run::stopped::SceneStart;
 use windfall_scene_run::run::tables::text_of_scene;
 use windfall_scene_run::run::workflow::{SceneRequest, run_scene};
 

@@ -12,6 +12,19 @@ pub(crate) struct Account {
     pub brought: f64,
 }
 
+impl Account {
+    /// Both together.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self {
+            normal: self.normal + other.normal,
+            friction: self.friction + other.friction,
+            drag: self.drag + other.drag,
+            walls: self.walls + other.walls,
+            brought: self.brought + other.brought,
+        }
+    }
+}
+
 /// Energies of a scene; J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, utoipa::ToSchema)]
 #[schema(as = EnergyOutcome)]

@@ -25,5 +25,6 @@ pub mod room;
 pub mod scene;
 pub mod shape;
 pub mod share;
+pub mod share_state;
 pub mod state;
 pub mod vector;

@@ -59,22 +59,22 @@ binary!(Answer { taken, told });
 
 /// The part of a scene that a rank follows.
 pub struct Share {
-    simulation: Simulation,
+    pub(crate) simulation: Simulation,
     /// Steps of the engine in one of the simulation.
     steps: u64,
     /// What was seen last: numbers, and how many were its own.
-    numbers: Vec<i32>,
-    local: usize,
+    pub(crate) numbers: Vec<i32>,
+    pub(crate) local: usize,
     /// Numbers and own ones before these changed.
-    before: (Vec<i32>, usize),
+    pub(crate) before: (Vec<i32>, usize),
     /// The atom of each fruit, and of each body; [`NONE`] of those that are not seen.
-    atom: Vec<u32>,
+    pub(crate) atom: Vec<u32>,
     at: Vec<u32>,
     /// Rebuilds of the list for which `at` holds; none where it does not.
     listed: Option<u64>,
     /// Each fruit in the frame before, and whether it was seen.
-    last: Vec<FruitState>,
-    known: Vec<bool>,
+    pub(crate) last: Vec<FruitState>,
+    pub(crate) known: Vec<bool>,
 }
 
 impl Share {
@@ -149,7 +149,7 @@ impl Share {
     }
 
     /// Whether the rank has a fruit now.
-    fn has(&self, fruit: u32) -> bool {
+    pub(crate) fn has(&self, fruit: u32) -> bool {
         self.atom[fruit as usize] < self.local as u32
     }
 
@@ -180,7 +180,7 @@ impl Share {
     }
 
     /// Contacts with walls of some fruit.
-    fn walls(&self, wanted: impl Fn(u32) -> bool) -> Vec<(u32, WallContactState)> {
+    pub(crate) fn walls(&self, wanted: impl Fn(u32) -> bool) -> Vec<(u32, WallContactState)> {
         let all = self.simulation.wall_contacts_of_bodies();
         let all = all.iter().map(|(body, own)| {
             let fruit = self.simulation.bodies.fruit[*body];
@@ -253,7 +253,10 @@ impl Share {
                 (self.last[fruit], self.known[fruit]) = (*own, true);
             }
         }
-        self.regroup(seen, &pairs, &walls)
+        self.regroup(seen, &pairs, &walls)?;
+        // It is handed over: a rank that sees no other fruit at the next exchange offers nothing.
+        self.before = (Vec::new(), 0);
+        Ok(())
     }
 
     /// Ends the contacts of fruit that left.
@@ -292,7 +295,7 @@ impl Share {
     }
 
     /// All bodies anew, with the contacts that are the rank's own.
-    fn regroup(
+    pub(crate) fn regroup(
         &mut self,
         seen: &Seen,
         pairs: &[PairState],

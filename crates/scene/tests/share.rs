@@ -8,6 +8,7 @@ use windfall_scene::event::Event;
 use windfall_scene::motion::simulation::{FruitState, Leaving, Simulation};
 use windfall_scene::scene::{Fruit, Scene};
 use windfall_scene::share::{Answer, Offer, Seen, Share};
+use windfall_scene::share_state::ShareState;
 use windfall_scene::vector::Vector;
 
 /// Apples that roll and collide across the planes x = 0 and y = 0, and leave through a sink.
@@ -191,6 +192,101 @@ fn repeats_pulses_to_the_last_bit_in_any_number_of_parts() {
     for (own, wanted) in followed.iter().zip(&hard).take(50) {
         assert!((own / wanted - 1.0).abs() < 1e-3, "{own} {wanted}");
     }
+}
+
+/// Other parts where these were, each of which takes up what some of them had.
+fn resumed(parts: &mut Parts, count: usize) -> Parts {
+    let frames = parts.shares[0].frames();
+    let states = parts.shares.iter_mut();
+    let states: Vec<ShareState> = states
+        .map(|own| moved(&own.checkpoint().unwrap()))
+        .collect();
+    let mut new = Parts::new(count);
+    for (part, own) in new.shares.iter_mut().enumerate() {
+        let taken = states.iter().skip(part).step_by(count).cloned();
+        let taken: Vec<ShareState> = taken.collect();
+        own.resume(frames, &taken).unwrap();
+    }
+    new
+}
+
+#[test]
+fn repeats_pulses_to_the_last_bit_where_parts_resume_on_any_number() {
+    let mut whole = Parts::new(2);
+    let mut parts = [2, 1, 4].map(|_| Parts::new(2));
+    let mut own = Simulation::new(rolling()).unwrap();
+    let mut before: [(Vec<Event>, Vec<Leaving>); 3] = Default::default();
+    let mut energies = [Energy::default(); 4];
+    let steps = 24_000;
+    for step in 0..=steps {
+        let fruit = own.fruit();
+        // Not where parts are divided anew, and twice.
+        if step == 7_020 || step == 13_777 {
+            resumed(&mut whole, 1);
+            for ((part, count), kept) in parts.iter_mut().zip([2, 1, 4]).zip(&mut before) {
+                let shares = || 0..part.shares.len();
+                for share in shares() {
+                    kept.0.extend(part.shares[share].take_events());
+                    kept.1.extend(part.shares[share].take_leavings());
+                }
+                *part = resumed(part, count);
+                part.divide(&fruit);
+            }
+            whole.divide(&fruit);
+        }
+        let all = std::iter::once(&mut whole).chain(&mut parts);
+        for (part, energy) in all.zip(&mut energies) {
+            if step % 50 == 0 {
+                part.divide(&fruit);
+            }
+            *energy = part.follow(&fruit, step == steps);
+        }
+        own.step().unwrap();
+    }
+    let found = whole.events();
+    assert!(found.0.len() > 60 && found.1.len() > 1, "{found:?}");
+    for (part, (events, left)) in parts.iter_mut().zip(before) {
+        let mut other = part.events();
+        other.0.extend(events);
+        other.1.extend(left);
+        let key = |own: &Event| (own.fruit, own.partner, own.number, own.time.to_bits());
+        other.0.sort_by_key(key);
+        other.1.sort_by_key(|own| own.fruit);
+        for (a, b) in other.0.iter().zip(&found.0) {
+            assert_eq!(a, b);
+        }
+        assert_eq!(other.0.len(), found.0.len());
+        assert_eq!(other.1, found.1);
+        for (a, b) in other.2.iter().zip(&found.2) {
+            assert_eq!(a, b);
+        }
+        assert!(other == found);
+    }
+    let [whole, same, others @ ..] = energies;
+    assert_eq!(same, whole);
+    for other in others {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * whole.lost();
+        assert!(near(other.lost(), whole.lost()) && near(other.closure(), whole.closure()));
+    }
+}
+
+#[test]
+fn rejects_states_of_other_frames_and_of_fruit_that_the_scene_has_not() {
+    let mut parts = Parts::new(1);
+    let own = Simulation::new(rolling()).unwrap();
+    parts.divide(&own.fruit());
+    parts.follow(&own.fruit(), false);
+    let state = parts.shares[0].checkpoint().unwrap();
+    let mut scene = rolling();
+    let problem = Share::new(scene.clone(), 1)
+        .unwrap()
+        .resume(3, std::slice::from_ref(&state));
+    let problem = problem.unwrap_err().to_string();
+    assert!(problem.contains("frame 1, where 3"), "{problem}");
+    scene.fruit.truncate(7);
+    let problem = Share::new(scene, 1).unwrap().resume(1, &[state]);
+    let problem = problem.unwrap_err().to_string();
+    assert!(problem.contains("none of this scene"), "{problem}");
 }
 
 #[test]

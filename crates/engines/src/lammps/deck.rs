@@ -43,6 +43,7 @@ pub fn lammps_deck(task: &Task) -> Result<Deck, Vec<String>> {
     if first < task.scene.fruit.len() {
         files.push(("come.in".to_owned(), COME.to_owned()));
     }
+    files.push(("go.in".to_owned(), go()));
     let mut findings: Vec<FindingOutcome> = task.finding_of_classes().into_iter().collect();
     if task.rolls() {
         findings.push(FindingOutcome::new(
@@ -68,17 +69,25 @@ fn head(task: &Task) -> String {
     };
     let reach = 2.0 * task.largest() + task.skin();
     let space = task.space(task.bounds(), task.classes.classes.len());
+    // An empty box has no fruit to number; a checkpoint has their numbers.
+    let number = match task.first() {
+        0 => "",
+        _ => "variable id atom id\nif \"${first} == 0\" then \"set group all i_fruit v_id\"\n",
+    };
     let mut text = format!(
         "# {}\n# A scene of windfall for LAMMPS of 29 September 2021 and newer: lmp -in in.scene\n\
          # Frames go to {FRAMES} every {} steps: `windfall scene run FILE --engine lammps --frames \
          {FRAMES}`\n# makes contacts, fruit and bruises of them.\n\
-         units si\natom_style sphere\natom_modify map hash sort 1000 {}\nboundary m m m\n\
-         newton off\ncomm_modify vel yes cutoff {reach}\nprocessors {processors}\n{space}\n\
-         fix fruit all property/atom i_fruit ghost yes\nvariable id atom id\nset group all i_fruit v_id\n\
-         group old empty\ngroup new empty\n",
+         {RESUME}variable time equal step*{}\nunits si\natom_style sphere\n\
+         atom_modify map hash sort 1000 {}\nboundary m m m\nnewton off\n\
+         comm_modify vel yes cutoff {reach}\nprocessors {processors}\n\
+         if \"${{first}} == 0\" then {} else \"read_restart ${{from}}\"\n\
+         fix fruit all property/atom i_fruit ghost yes\n{number}group old empty\ngroup new empty\n",
         comment_text(task.title),
         task.frame_steps,
+        scene.time_step,
         2.2 * task.largest(),
+        quoted(&space),
     );
     for (number, class) in task.classes.classes.iter().enumerate() {
         let kind = number + 1;
@@ -90,12 +99,20 @@ fn head(task: &Task) -> String {
             class.mass
         );
     }
-    if task.first() == 0 {
-        // An empty box has no fruit to number.
-        text = text.replace("variable id atom id\nset group all i_fruit v_id\n", "");
-    }
     text
 }
+
+/// Lines as commands of an `if`.
+fn quoted(lines: &str) -> String {
+    let lines: Vec<String> = lines.lines().map(|own| format!("\"{own}\"")).collect();
+    lines.join(" ")
+}
+
+/// What is said before the deck otherwise: steps between checkpoints, where there are any; and of a
+/// run that goes on from one its restart file, the fruit from 1 that comes next, and the step at
+/// which it is tried.
+pub(crate) const RESUME: &str = "variable keep index 0\nvariable from index none\nvariable first index 0\n\
+                      variable next index 0\n";
 
 fn pairs(task: &Task) -> Result<String, String> {
     let classes = &task.classes.classes;
@@ -131,7 +148,8 @@ fn run(task: &Task) -> String {
     let steps = task.steps;
     let mut text = format!(
         "{}compute_modify thermo_temp dynamic/dof yes\n\
-         dump frames all custom {} {FRAMES} i_fruit x y z vx vy vz omegax omegay omegaz\n",
+         dump frames all custom {} {FRAMES} i_fruit x y z vx vy vz omegax omegay omegaz\n\
+         if \"${{first}} > 0\" then \"run 0 post no\"\nvariable end equal {steps}\n",
         task.stepping(),
         task.frame_steps,
     );
@@ -139,7 +157,7 @@ fn run(task: &Task) -> String {
         if place == 0 {
             let _ = writeln!(
                 text,
-                "variable reach equal {}\nvariable wait equal {}\nvariable end equal {steps}",
+                "variable reach equal {}\nvariable wait equal {}",
                 2.0 * task.largest(),
                 task.wait()
             );
@@ -160,12 +178,44 @@ fn run(task: &Task) -> String {
             variables(&[("l", low), ("h", high)])
         );
     }
-    text + &format!("if \"$(step) < {steps}\" then \"run {steps} upto\"\n")
+    let none = task.scene.fruit.len() + 1;
+    text + &format!("variable coming equal {none}\nvariable to equal {steps}\ninclude go.in\n")
 }
 
-/// How a fruit comes: at its step; where its place is taken elsewhere in its box, on places
-/// that are spread over it, and where there is no room it waits.
-const COME: &str = r#"if "$(step) < ${at}" then "run ${at} upto"
+/// How it goes on to a step, with a checkpoint where one is due. A run goes on from it as if it
+/// had read it: forces are calculated anew from velocities of whole steps.
+fn go() -> String {
+    format!(
+        r#"label on
+if "$(step) >= ${{to}}" then "jump SELF there"
+variable stop equal ${{to}}
+if "${{keep}} > 0" then "variable stop equal $((floor(step/v_keep)+1)*v_keep)"
+if "${{stop}} > ${{to}}" then "variable stop equal ${{to}}"
+run ${{stop}} upto
+if "${{keep}} == 0" then "jump SELF on"
+if "$(step%v_keep) > 0" then "jump SELF on"
+if "$(step) < ${{end}}" then "write_restart {}" "run 0 post no"
+jump SELF on
+label there
+"#,
+        restart_name("$(round(step/v_keep)%2)")
+    )
+}
+
+/// Name of LAMMPS's own part of a checkpoint.
+///
+/// * `turn`: 0 or 1, in turn, so that the one of before stays whole
+pub(crate) fn restart_name(turn: impl std::fmt::Display) -> String {
+    format!("checkpoint.{turn}.lammps")
+}
+
+/// How a fruit comes, unless it came before a checkpoint: at its step; where its place is taken
+/// elsewhere in its box, on places that are spread over it, and where there is no room it waits.
+const COME: &str = r#"if "${fruit} < ${first}" then "jump SELF done"
+if "${fruit} == ${first}" then "variable at string ${next}"
+variable coming equal ${fruit}
+variable to equal ${at}
+include go.in
 label again
 variable attempt delete
 variable attempt loop 0 ${attempts}
@@ -179,7 +229,8 @@ if "${taken} == 0" then "jump SELF free"
 next attempt
 jump SELF try
 if "$(step+v_wait) > ${end}" then "jump SELF done"
-run ${wait}
+variable to equal $(step+v_wait)
+include go.in
 jump SELF again
 label free
 group old clear

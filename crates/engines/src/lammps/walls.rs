@@ -166,12 +166,12 @@ fn shift(motion: &Motion, region: &Region) -> Result<[String; 3], String> {
 fn elapsed(when: &When) -> String {
     let When { from, until, ramp } = *when;
     if *when == When::ALWAYS {
-        return "time".to_owned();
+        return "v_time".to_owned();
     }
     // The part of a time above zero, or half the square of it over the ramp.
     let grows = |corner: f64| match ramp > 0.0 {
-        true => format!("(time>{corner})*(time-{corner})^2/{}", 2.0 * ramp),
-        false => format!("(time>{corner})*(time-{corner})"),
+        true => format!("(v_time>{corner})*(v_time-{corner})^2/{}", 2.0 * ramp),
+        false => format!("(v_time>{corner})*(v_time-{corner})"),
     };
     let mut corners = vec![(from, '+')];
     if ramp > 0.0 {
@@ -196,22 +196,22 @@ fn elapsed(when: &When) -> String {
 fn oscillation(when: &When, rate: f64) -> String {
     let When { from, until, ramp } = *when;
     if *when == When::ALWAYS {
-        return format!("sin({rate}*time)");
+        return format!("sin({rate}*v_time)");
     }
-    let wave = format!("sin({rate}*(time-{from}))");
+    let wave = format!("sin({rate}*(v_time-{from}))");
     let rises = match ramp > 0.0 {
         true => format!(
-            "((time>{from})*(time-{from})-(time>{top})*(time-{top}))/{ramp}",
+            "((v_time>{from})*(v_time-{from})-(v_time>{top})*(v_time-{top}))/{ramp}",
             top = from + ramp
         ),
-        false => format!("(time>{from})"),
+        false => format!("(v_time>{from})"),
     };
     let falls = match (until.is_finite(), ramp > 0.0) {
         (true, true) => format!(
-            "(1-((time>{top})*(time-{top})-(time>{until})*(time-{until}))/{ramp})",
+            "(1-((v_time>{top})*(v_time-{top})-(v_time>{until})*(v_time-{until}))/{ramp})",
             top = until - ramp
         ),
-        (true, false) => format!("(time<{until})"),
+        (true, false) => format!("(v_time<{until})"),
         (false, _) => "1".to_owned(),
     };
     format!("{wave}*{rises}*{falls}")

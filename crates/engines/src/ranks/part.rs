@@ -4,7 +4,7 @@
 //! each record follows behind its length in bytes.
 
 use std::fs::File;
-use std::io::{BufWriter, Read, Result as IoResult, Write};
+use std::io::{BufWriter, Read, Result as IoResult, Seek, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::provenance::VERSION;
@@ -22,16 +22,18 @@ use windfall_scene_run::run::checkpoint::{Parts, parts_of};
 /// How a part begins.
 const MAGIC: [u8; 8] = *b"WFPULSE\n";
 /// Version of its shape.
-const SHAPE: u32 = 1;
+const SHAPE: u32 = 2;
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 18;
 
 /// Whose part it is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Head {
-    /// Its number, and how many there are.
+    /// Its number among the ranks that run together, and how many these are.
     pub rank: usize,
     pub ranks: usize,
+    /// Bytes that count of each part that was written before the run went on from a checkpoint.
+    pub before: Vec<u64>,
     /// Version of LAMMPS as year, month and day.
     pub engine: u32,
     /// Steps between frames.
@@ -62,9 +64,17 @@ pub(crate) struct End {
     pub fruit: Vec<FruitState>,
 }
 
+impl Head {
+    /// Number of its part.
+    pub fn number(&self) -> usize {
+        self.before.len() + self.rank
+    }
+}
+
 binary!(Head {
     rank,
     ranks,
+    before,
     engine,
     frame_steps,
     scene
@@ -85,7 +95,7 @@ pub(crate) fn scene_of(plan: &ScenePlan) -> Parts {
     parts
 }
 
-/// Name of a part.
+/// Name of a part. A run that goes on from a checkpoint has more parts, behind those of before.
 pub(crate) fn part_name(rank: usize) -> String {
     format!("pulses.{rank}.bin")
 }
@@ -95,11 +105,14 @@ pub(crate) fn partial_name(rank: usize) -> String {
     format!("{}.partial", part_name(rank))
 }
 
-/// Removes the parts of an earlier run.
+/// Removes the parts of an earlier run. What has such a name and is no file is left to who writes
+/// there.
+///
+/// * `from`: the first that is removed
 ///
 /// # Errors
 /// A file of that name is of somebody else, or cannot be removed.
-pub(crate) fn remove_parts(directory: &Path) -> Result<(), Error> {
+pub(crate) fn remove_parts(directory: &Path, from: usize) -> Result<(), Error> {
     for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let rank = name.to_str().and_then(|own| {
@@ -107,25 +120,28 @@ pub(crate) fn remove_parts(directory: &Path) -> Result<(), Error> {
             let own = own.strip_suffix(".partial").unwrap_or(own);
             own.strip_suffix(".bin")?.parse().ok()
         });
-        let Some(rank) = rank else {
+        let path = entry.path();
+        let Some(rank) = rank.filter(|own| *own >= from && check_plain(&path).is_ok()) else {
             continue;
         };
-        let path = entry.path();
         check_target(&directory.join(part_name(rank)))?;
-        check_plain(&path)?;
         std::fs::remove_file(&path).map_err(access(&path, "replace"))?;
     }
     Ok(())
 }
 
-/// Gives the parts of all ranks their names.
+/// Gives all parts their names.
 ///
 /// # Errors
 /// They cannot be renamed.
-pub(crate) fn name_parts(directory: &Path, ranks: usize) -> Result<(), Error> {
-    for rank in 0..ranks {
-        let [part, partial] = [part_name(rank), partial_name(rank)];
+pub(crate) fn name_parts(directory: &Path, count: usize) -> Result<(), Error> {
+    for number in 0..count {
+        let [part, partial] = [part_name(number), partial_name(number)];
         let [part, partial] = [part, partial].map(|name| directory.join(name));
+        if part.exists() && !partial.exists() {
+            // Of a run that was stopped in its last moment.
+            continue;
+        }
         list_written_as(&part, &partial)?;
         std::fs::rename(&partial, &part).map_err(access(&part, "write"))?;
     }
@@ -141,8 +157,8 @@ pub(crate) struct PartWriter {
 impl PartWriter {
     /// A part without records.
     pub fn create(directory: &Path, head: &Head) -> Result<Self, Error> {
-        let path = directory.join(partial_name(head.rank));
-        check_target(&directory.join(part_name(head.rank)))?;
+        let path = directory.join(partial_name(head.number()));
+        check_target(&directory.join(part_name(head.number())))?;
         check_plain(&path)?;
         let file = File::create(&path).map_err(access(&path, "write"))?;
         let mut own = Self {
@@ -182,11 +198,12 @@ impl PartWriter {
         self.failed(done)
     }
 
-    /// Brings all to the disk.
-    pub fn finish(mut self) -> Result<(), Error> {
+    /// Brings all so far to the disk; its length in bytes.
+    pub fn sync(&mut self) -> Result<u64, Error> {
         self.flush()?;
-        let done = self.to.get_ref().sync_all();
-        self.failed(done)
+        let file = self.to.get_mut();
+        let length = file.sync_all().and_then(|()| file.stream_position());
+        length.map_err(access(&self.path, "write"))
     }
 }
 
@@ -203,6 +220,8 @@ pub(crate) struct PartReader {
     /// Bytes that were read, and how many of them are used.
     bytes: Vec<u8>,
     used: usize,
+    /// Bytes of the file that count and were not read yet.
+    left: u64,
     /// Whose part it is.
     pub head: Head,
 }
@@ -210,9 +229,11 @@ pub(crate) struct PartReader {
 impl PartReader {
     /// Opens a part; none where it is not begun yet.
     ///
+    /// * `length`: bytes of it that count; all if left out
+    ///
     /// # Errors
     /// It is none, or one of another windfall.
-    pub fn open(path: &Path) -> Result<Option<Self>, String> {
+    pub fn open(path: &Path, length: Option<u64>) -> Result<Option<Self>, String> {
         let Ok(file) = File::open(path) else {
             return Ok(None);
         };
@@ -220,6 +241,7 @@ impl PartReader {
             file,
             bytes: Vec::new(),
             used: 0,
+            left: length.unwrap_or(u64::MAX),
             head: Head::default(),
         };
         let Some(range) = own.next_range()? else {
@@ -270,11 +292,11 @@ impl PartReader {
             self.bytes.drain(..self.used);
             self.used = 0;
             let before = self.bytes.len();
-            let most = (wanted - before).max(BLOCK) as u64;
+            let most = ((wanted - before).max(BLOCK) as u64).min(self.left);
             let read = (&self.file).take(most).read_to_end(&mut self.bytes);
             match read {
                 Ok(0) => return Ok(None),
-                Ok(_) => {}
+                Ok(read) => self.left -= read as u64,
                 Err(error) => return Err(format!("cannot read: {error}")),
             }
         }
@@ -325,14 +347,15 @@ mod tests {
         let head = Head {
             rank: 1,
             ranks: 2,
+            before: Vec::new(),
             engine: 20_220_106,
             frame_steps: 3,
             scene: vec![("fruit".to_owned(), "ab".to_owned())],
         };
         let path = folder.join(partial_name(1));
-        assert!(PartReader::open(&path).unwrap().is_none());
+        assert!(PartReader::open(&path, None).unwrap().is_none());
         let mut writer = PartWriter::create(&folder, &head).unwrap();
-        let mut reader = PartReader::open(&path).unwrap().unwrap();
+        let mut reader = PartReader::open(&path, None).unwrap().unwrap();
         assert_eq!(reader.head, head);
         assert_eq!(reader.next_record().unwrap(), None);
         let record = |frame: u64| Record {
@@ -356,13 +379,20 @@ mod tests {
         }
         assert_eq!(reader.next_record().unwrap(), None);
         writer.write(&record(4)).unwrap();
-        writer.finish().unwrap();
+        writer.sync().unwrap();
         assert_eq!(reader.next_record().unwrap(), Some(record(4)));
+        // What a checkpoint does not count on is not there.
+        let length = std::fs::metadata(&path).unwrap().len();
+        let mut reader = PartReader::open(&path, Some(length - 1)).unwrap().unwrap();
+        for frame in 1..4 {
+            assert_eq!(reader.next_record().unwrap(), Some(record(frame)));
+        }
+        assert_eq!(reader.next_record().unwrap(), None);
         // Cut anywhere it is a part that is not whole yet; damaged at its beginning it is none.
         let whole = std::fs::read(&path).unwrap();
         for end in 0..whole.len() {
             std::fs::write(&path, &whole[..end]).unwrap();
-            let Some(mut reader) = PartReader::open(&path).unwrap() else {
+            let Some(mut reader) = PartReader::open(&path, None).unwrap() else {
                 continue;
             };
             let mut read = 0;
@@ -374,7 +404,7 @@ mod tests {
         let mut other = whole.clone();
         other[8] = b'X';
         std::fs::write(&path, &other).unwrap();
-        let problem = PartReader::open(&path).err().unwrap();
+        let problem = PartReader::open(&path, None).err().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
         assert!(problem.contains("no pulses"), "{problem}");
     }

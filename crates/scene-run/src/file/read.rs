@@ -62,6 +62,14 @@ pub struct ScenePlan {
     pub start: Option<StartPlan>,
 }
 
+impl ScenePlan {
+    /// Time steps between checkpoints, where there are any.
+    pub fn checkpoint_steps(&self) -> Option<u64> {
+        let steps = |own: f64| (own / self.scene.time_step).round().max(1.0) as u64;
+        self.checkpoint.map(steps)
+    }
+}
+
 /// The end of a run, where another one begins.
 #[derive(Clone, Debug)]
 pub struct StartPlan {

@@ -3,14 +3,15 @@
 use crate::bruise::scene::Blows;
 use crate::file::read::ScenePlan;
 use crate::run::checkpoint::{
-    CheckpointHead, Parts, changed_parts, checkpoint_head, checkpoint_path, damaged, parts_of,
-    read_checkpoint, remove_checkpoint, write_checkpoint,
+    CheckpointHead, Parts, changed_parts, checkpoint_path, damaged, parts_of, read_checkpoint,
+    remove_checkpoint, write_checkpoint,
 };
 use crate::run::frames::SceneRecorder;
 use crate::run::outcome::Tally;
 use crate::run::sensors::watch::Sensors;
 use crate::run::start::{begin_at, end_path};
-use crate::run::tables::{EventFile, is_written};
+use crate::run::stopped::{Keeper, SceneStart, goes_on};
+use crate::run::tables::EventFile;
 use crate::run_error::{SceneRunError, stopped_scene};
 use std::io::{Read, Result as IoResult};
 use std::path::{Path, PathBuf};
@@ -22,18 +23,6 @@ use windfall_scene::energy::Energy;
 use windfall_scene::event::Event;
 use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::state::State;
-
-/// How to treat a run that was stopped.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SceneStart {
-    /// Refuse to overwrite it.
-    #[default]
-    Fresh,
-    /// Resume from its checkpoint.
-    Resume,
-    /// Start over.
-    Restart,
-}
 
 /// What moves the fruit of a scene.
 pub trait Mover: Send {
@@ -53,8 +42,16 @@ pub trait Mover: Send {
     /// Its own time steps in one.
     fn steps(&self) -> u64;
 
-    /// Whether it can resume from a checkpoint.
+    /// Whether the run makes checkpoints of what it moves.
     fn goes_on(&self) -> bool;
+
+    /// Time up to which it has made checkpoints of its own; s.
+    fn kept(&self) -> Option<f64> {
+        None
+    }
+
+    /// All results are written: what it has kept is not needed any more.
+    fn finish(&mut self) {}
 }
 
 /// The engine of this program.
@@ -125,26 +122,13 @@ impl SceneRun {
     ) -> Result<Self, Error> {
         let checkpoint = checkpoint_path(directory);
         let events = directory.join("events.csv");
-        let going = is_written(&events);
-        // The table gets its name as the last of all: what is without it is done.
-        let stopped = checkpoint.exists() && going.is_some();
-        match (start, going) {
-            (_, Some(true)) => return Err(Error::from(SceneRunError::Busy { path: events })),
-            (SceneStart::Fresh, _) if stopped => {
-                let head = checkpoint_head(&checkpoint);
-                return Err(Error::from(SceneRunError::Unfinished {
-                    directory: directory.to_path_buf(),
-                    at: head.map(|head| [head.time, head.end]),
-                }));
-            }
-            (SceneStart::Resume, None) => {
-                let directory = directory.to_path_buf();
-                return Err(Error::from(SceneRunError::NothingToResume { directory }));
-            }
-            _ => {}
-        }
+        let keeper = match mover.goes_on() {
+            true => Keeper::Run,
+            false => Keeper::Engine,
+        };
+        let resumes = goes_on(directory, start, keeper)?;
         let parts = parts_of(plan);
-        if start == SceneStart::Resume && stopped {
+        if resumes && mover.goes_on() {
             return Self::resumed(plan, (checkpoint, &events), directory, parts);
         }
         let (simulation, left) = match &plan.start {
@@ -155,6 +139,9 @@ impl SceneRun {
             }
         };
         remove_checkpoint(&checkpoint)?;
+        if mover.goes_on() {
+            remove_checkpoint(&Keeper::Engine.path(directory))?;
+        }
         check_target(&end_path(directory))?;
         let table = EventFile::create(&events, &plan.scene, plan.least_peak_force)?;
         let frames = SceneRecorder::create(plan, directory)?;
@@ -197,9 +184,7 @@ impl SceneRun {
             checkpoint,
             parts,
             all: (plan.end / step).ceil() as u64,
-            every: plan
-                .checkpoint
-                .map(|own| (own / step).round().max(1.0) as u64),
+            every: plan.checkpoint_steps(),
             end: plan.end,
             kept: None,
         }
@@ -264,6 +249,10 @@ impl SceneRun {
             // It would be stopped there again.
             self.leave_nothing();
         }
+        self.kept = self.kept.or_else(|| mover.kept());
+        if self.kept.is_some() {
+            self.table.keep(true);
+        }
         done.map_err(|error| self.told(error))
     }
 
@@ -274,7 +263,14 @@ impl SceneRun {
             let most = CHUNK.min(self.all - steps).min(to_checkpoint);
             let steps = self.frames.steps(&self.simulation, most);
             let steps = self.sensors.steps(&self.simulation, steps);
-            mover.run(&mut self.simulation, steps)?;
+            if let Err(error) = mover.run(&mut self.simulation, steps) {
+                // An engine may be interrupted by the same key.
+                let steps = self.simulation.steps();
+                return match progress(steps as usize, self.all as usize).is_break() {
+                    true => Err(self.interrupted(mover)),
+                    false => Err(error),
+                };
+            }
             for event in self.simulation.take_events() {
                 self.count(&event)?;
             }
@@ -288,7 +284,7 @@ impl SceneRun {
                 self.save()?;
             }
             if progress(steps as usize, self.all as usize).is_break() {
-                return Err(self.interrupted());
+                return Err(self.interrupted(mover));
             }
         }
         Ok(())
@@ -342,9 +338,9 @@ impl SceneRun {
         Ok(())
     }
 
-    fn interrupted(&self) -> Error {
+    fn interrupted(&self, mover: &dyn Mover) -> Error {
         let (now, end) = (self.simulation.time(), self.end);
-        match self.kept {
+        match self.kept.or_else(|| mover.kept()) {
             Some(kept) => Error::from(SceneRunError::Stopped { now, end, kept }),
             None => Error::Cancelled,
         }

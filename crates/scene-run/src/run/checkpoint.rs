@@ -26,6 +26,9 @@ const SHAPE: u32 = 6;
 /// Name in the directory of the results.
 const NAME: &str = "checkpoint.bin";
 
+/// Where another engine runs, in the directory of the results.
+pub const ENGINE_FOLDER: &str = "engine";
+
 /// Bytes of the digest at the end.
 const DIGEST: u64 = 32;
 

@@ -42,7 +42,7 @@ pub(crate) fn take_back(path: &Path) -> Result<(), Error> {
 ///
 /// # Errors
 /// It cannot be removed.
-pub(crate) fn remove_earlier(path: &Path) -> Result<(), Error> {
+pub fn remove_earlier(path: &Path) -> Result<(), Error> {
     if !is_written(path, None).unwrap_or(false) {
         return Ok(());
     }

@@ -5,7 +5,7 @@ use crate::file::engine_kind::Engine;
 use crate::file::read::{ScenePlan, read_scene};
 use crate::file::step::checked_step;
 use crate::file_error::{make_directory, write_json};
-use crate::run::advance::{Mover, Own, SceneRun, SceneStart};
+use crate::run::advance::{Mover, Own, SceneRun};
 use crate::run::frame_format::FRAMES_FILE;
 use crate::run::frames::remove_frames;
 use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
@@ -13,6 +13,7 @@ use crate::run::outcome::{PartnerOutcome, SceneOutcome, StepOutcome, Tally, find
 use crate::run::sensors::figure::figure_of_sensors;
 use crate::run::sensors::watch::Sensors;
 use crate::run::start::{find_start, remove_end, save_end};
+use crate::run::stopped::SceneStart;
 use crate::run::tables::fruit_table;
 use crate::run_error::stopped_scene as stopped;
 use std::path::{Path, PathBuf};
@@ -145,6 +146,7 @@ pub fn run_moved(
     let outcome = written.map_err(|error| run.told(error))?;
     let blows = run.blows.take();
     run.finish()?;
+    moved.mover.finish();
     Ok(RunOfScene { outcome, blows })
 }
 

@@ -3,8 +3,8 @@
 use crate::file::read::scene_of;
 use crate::file_error::{access, make_directory, write_json};
 use crate::frames::view::{PictureRequest, draw_scene, open_frames};
-use crate::run::advance::SceneStart;
 use crate::run::checkpoint::{check_checkpoint, checkpoint_path};
+use crate::run::stopped::SceneStart;
 use crate::run::workflow::run_plan;
 use crate::study::laws::{certain_laws, draw_laws};
 use crate::study::outcome::{Replicate, StudyOutcome, effects, variant};

@@ -90,7 +90,8 @@ printed). Units are in the names of \
 the columns; SI.
 
 A run that was stopped, by Ctrl-C, a full disk or a cut of power, goes on from its last checkpoint with --resume, \
-and gives the same files to the last digit; `checkpoint` in [scene] says how often one is made.
+and gives the same files to the last digit; `checkpoint` in [scene] says how often one is made. On LAMMPS it may go \
+on with another number of --ranks, whose pulses differ by rounding.
 
 Examples:
   windfall new scene my-scene

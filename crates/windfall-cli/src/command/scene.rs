@@ -15,7 +15,7 @@ use windfall_engines::ranks::follow::run_rank;
 use windfall_engines::run::{EngineRequest, export_deck, run_on_engine};
 use windfall_engines::text::{text_of_contacts, text_of_deck};
 use windfall_scene_run::file::engine_kind::Engine;
-use windfall_scene_run::run::advance::SceneStart;
+use windfall_scene_run::run::stopped::SceneStart;
 use windfall_scene_run::run::tables::{csv_of_scene, text_of_scene};
 use windfall_scene_run::run::workflow::SceneRequest;
 use windfall_scene_run::study::run::run_study;

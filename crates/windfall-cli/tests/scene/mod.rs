@@ -5,6 +5,7 @@
 mod engines;
 mod moves;
 mod ranks;
+mod ranks_resume;
 mod run;
 mod start;
 mod study;

@@ -6,15 +6,15 @@ use super::{said, windfall};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const EXACT: [&str; 4] = ["--engine", "lammps", "--classes", "28"];
+pub(super) const EXACT: [&str; 4] = ["--engine", "lammps", "--classes", "28"];
 
-fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
+pub(super) fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
     EXACT.iter().chain(more).copied().collect()
 }
 
 /// Fruit that move slowly along a floor through the border of ranks while they rest on it and on
 /// each other, and some that fall onto them there.
-fn crossing() -> String {
+pub(super) fn crossing() -> String {
     let mut text = String::from(
         r#"format = 1
 materials = ["apple", "steel"]
@@ -69,7 +69,7 @@ fn count(all: &BTreeMap<String, Vec<Contact>>) -> usize {
 }
 
 /// Every row of events.csv but its times and places, which rounding moves.
-fn rows(folder: &Path, out: &str) -> Vec<Vec<f64>> {
+pub(super) fn rows(folder: &Path, out: &str) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(folder.join(out).join("events.csv")).unwrap();
     let number = |cell: &str| cell.parse().unwrap_or(f64::from(u8::from(cell == "true")));
     let row = |line: &str| line.split(',').map(number).collect();
@@ -303,7 +303,7 @@ fn options_of_another_engine_are_refused() {
 }
 
 /// Processes whose arguments hold a word.
-fn processes(word: &str) -> Vec<String> {
+pub(super) fn processes(word: &str) -> Vec<String> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir("/proc").unwrap().flatten() {
         let arguments = std::fs::read(entry.path().join("cmdline")).unwrap_or_default();
