@@ -108,9 +108,8 @@ fn quoted(lines: &str) -> String {
     lines.join(" ")
 }
 
-/// What is said before the deck otherwise: steps between checkpoints, where there are any; and of a
-/// run that goes on from one its restart file, the fruit from 1 that comes next, and the step at
-/// which it is tried.
+/// What who starts the deck may set otherwise: steps between checkpoints; and for a run that goes on
+/// from one, its restart file, the fruit that comes next (from 1), and the step at which it is tried.
 pub(crate) const RESUME: &str = "variable keep index 0\nvariable from index none\nvariable first index 0\n\
                       variable next index 0\n";
 

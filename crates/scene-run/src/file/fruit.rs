@@ -45,10 +45,8 @@ pub fn fruit_of(
     let density = table.above_zero(&file.density, "density", "kg/m^3")?;
     let density = density.ok_or_else(|| table.lacks("density", "density", example))?;
     if let (Some(given), false) = (&file.density, DENSITIES.contains(&density)) {
-        let problem = format!(
-            "nothing that is handled has {density} kg/m^3: water has 1000, an apple about 840; \
-             1 g/cm^3 is 1000 kg/m^3"
-        );
+        let problem = "it must lie between 10 and 25,000 kg/m^3: an apple has about 840, water 1000; \
+                       1 g/cm^3 is 1000 kg/m^3";
         return Err(table.refused(&given.span(), "density", given.get_ref(), problem));
     }
     let kind = FruitKind {

@@ -147,7 +147,7 @@ fn rejects_scenes_that_cannot_be_with_their_line() {
         ),
         (
             ("density = \"840 kg/m^3\"", "density = \"0.84 kg/m^3\""),
-            &["line", "density=\"0.84 kg/m^3\"", "water has 1000"],
+            &["line", "density = \"0.84 kg/m^3\"", "between 10 and 25,000"],
         ),
         (
             ("diameter = \"75 mm\"", "diameter = \"75 kg\""),
