@@ -109,6 +109,7 @@ impl WallState {
         format!("\"{}\"", self.names[wall as usize])
     }
 
+    #[inline(always)]
     pub(crate) fn closest(&self, facet: u32, place: Vector) -> Closest {
         let (wall, facet) = &self.facets[facet as usize];
         let placed = self.placed[*wall as usize].as_ref();
@@ -165,6 +166,7 @@ impl WallState {
     /// a step ago; m/s.
     ///
     /// * `closest`: point of the part now
+    #[inline(always)]
     pub(crate) fn meet(
         &self,
         facet: u32,
@@ -174,14 +176,21 @@ impl WallState {
     ) -> (Touch<f64>, Vector) {
         let (wall, part) = &self.facets[facet as usize];
         let centre = plus_scaled(body.centre, body.velocity, -0.5 * step);
+        let other;
         let before = match (
             &self.placed[*wall as usize],
             closest.inside && part.is_flat(),
         ) {
-            (None, true) => *closest,
+            (None, true) => closest,
             // Of the same plane, even where the fruit has just come over its edge.
-            (Some((now, before)), true) => now.carried(closest, before, centre),
-            (placed, false) => part.closest(placed.as_ref().map(|(_, before)| before), centre),
+            (Some((now, before)), true) => {
+                other = now.carried(closest, before, centre);
+                &other
+            }
+            (placed, false) => {
+                other = part.closest(placed.as_ref().map(|(_, before)| before), centre);
+                &other
+            }
         };
         let wall_velocity = self.velocity(*wall, before.point, before.normal);
         let relative = subtract(body.velocity, wall_velocity);
@@ -271,10 +280,11 @@ pub(crate) fn aim<'a>(
         return;
     }
     follow(near, around, hits, body, stores, outcome);
-    for &(facet, closest) in hits.iter() {
+    for (facet, closest) in hits.iter() {
+        let facet = *facet;
         let wall = walls.facets[facet as usize].0;
         let (interaction, surface) = (around.surface)(wall);
-        let (touch, wall_velocity) = walls.meet(facet, &closest, &at, now.clock.step);
+        let (touch, wall_velocity) = walls.meet(facet, closest, &at, now.clock.step);
         let displacement = touch.displacement;
         let Some(place) = around
             .near

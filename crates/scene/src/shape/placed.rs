@@ -60,7 +60,7 @@ impl Placed {
 
 impl Facet {
     /// The closest point of the facet as it is placed.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn closest(&self, placed: Option<&Placed>, place: Vector) -> Closest {
         let Some(placed) = placed else {
             return self.closest_at_rest(place);

@@ -206,23 +206,34 @@ impl Plate {
     }
 }
 
+#[inline(always)]
+fn closest_of_plane(point: Vector, normal: Vector, place: Vector) -> Closest {
+    let distance = dot(subtract(place, point), normal);
+    Closest {
+        point: plus_scaled(place, normal, -distance),
+        normal: scaled(normal, -1.0),
+        distance,
+        inside: true,
+    }
+}
+
 /// Places looked at along each edge of a plate, around and along a cylinder.
 const PLACES: usize = 12;
 
 impl Facet {
     /// The closest point of the facet where its wall is at rest.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn closest_at_rest(&self, place: Vector) -> Closest {
+        // Of a plane it is known before others are told apart: in registers, not in memory.
         match *self {
-            Self::Plane { point, normal } => {
-                let distance = dot(subtract(place, point), normal);
-                Closest {
-                    point: plus_scaled(place, normal, -distance),
-                    normal: scaled(normal, -1.0),
-                    distance,
-                    inside: true,
-                }
-            }
+            Self::Plane { point, normal } => closest_of_plane(point, normal, place),
+            _ => self.closest_of_other(place),
+        }
+    }
+
+    fn closest_of_other(&self, place: Vector) -> Closest {
+        match *self {
+            Self::Plane { point, normal } => closest_of_plane(point, normal, place),
             Self::Plate(Plate { corner, edges }) => {
                 let (u, v) = along_edges(subtract(place, corner), edges);
                 let (s, t, inside) = into_unit_square(u, v, subtract(place, corner), edges);
