@@ -17,11 +17,6 @@ impl Line {
     pub(crate) const ZERO: Self = Self([0.0; 8]);
 }
 
-/// What begins where a line does.
-#[derive(Clone, Copy)]
-#[repr(C, align(64))]
-pub(crate) struct Aligned<T>(pub T);
-
 macro_rules! numbers {
     ($of:ident, $count:literal) => {
         impl Deref for $of {

@@ -108,8 +108,8 @@ fn quoted(lines: &str) -> String {
     lines.join(" ")
 }
 
-/// What who starts the deck may set otherwise: steps between checkpoints; and for a run that goes on
-/// from one, its restart file, the fruit that comes next (from 1), and the step at which it is tried.
+/// Variables that may be set before the deck: steps between checkpoints; and for a run that resumes,
+/// the restart file, the next fruit (from 1), and the step at which it is tried.
 pub(crate) const RESUME: &str = "variable keep index 0\nvariable from index none\nvariable first index 0\n\
                       variable next index 0\n";
 

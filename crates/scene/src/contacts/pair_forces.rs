@@ -6,7 +6,6 @@ use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::react::{Clock, Normal, Touch, direction_before, surface_motion};
 use crate::contacts::store::{CHUNK, Load, Store, Turning, add_load, loads};
 use crate::interaction::Interaction;
-use crate::line::Aligned;
 use crate::vector::dot;
 use windfall_numerics::real::Lanes;
 use windfall_numerics::real_vector::{EIGHT, EightLanes, EightNumbers, Row};
@@ -44,9 +43,9 @@ impl EightLanes for Batch<'_> {
     fn run<R: EightNumbers>(self, zero: R) -> f64 {
         let mut batch = self;
         let mut deepest = zero;
-        let mut meetings = Aligned([Meeting::all(zero); CHUNK]);
-        let mut given = Aligned([[Lanes::ZERO; 3]; CHUNK]);
-        let mut found = Aligned([Normal::all(Lanes::ZERO); CHUNK]);
+        let mut meetings = [Meeting::all(zero); CHUNK];
+        let mut given = [[Lanes::ZERO; 3]; CHUNK];
+        let mut found = [Normal::all(Lanes::ZERO); CHUNK];
         let groups = batch.pairs.len().div_ceil(EIGHT);
         let (step, rolls) = (batch.clock.step, batch.surface.rolls());
         for first in (0..groups).step_by(CHUNK) {
@@ -56,13 +55,13 @@ impl EightLanes for Batch<'_> {
                 let meeting = meet(batch.bodies, pairs, (step, rolls), zero);
                 let touch = &meeting.touch;
                 deepest = deepest.max(touch.displacement - meeting.smaller * LARGEST_OVERLAP);
-                given.0[own] = batch.store.given(first + own, touch, zero);
-                meetings.0[own] = meeting;
+                given[own] = batch.store.given(first + own, touch, zero);
+                meetings[own] = meeting;
             }
-            let (given, found) = (&given.0[..count], &mut found.0[..count]);
+            let (given, found) = (&given[..count], &mut found[..count]);
             batch.store.normal(batch.surface, first, given, found);
             for own in 0..count {
-                batch.push(first + own, &meetings.0[own], &found[own], zero);
+                batch.push(first + own, &meetings[own], &found[own], zero);
             }
         }
         batch.parting.reverse();
@@ -105,8 +104,8 @@ impl Batch<'_> {
         let before = (!together).then(|| self.store.before(group));
         let work = (self.surface, self.clock);
         let reaction = self.store.react(group, touch, found, work, zero);
-        let Aligned(near) = &loads(touch.normal, &reaction, meeting.near, 1.0, zero);
-        let Aligned(far) = &loads(touch.normal, &reaction, meeting.far, -1.0, zero);
+        let near = loads(touch.normal, &reaction, meeting.near, 1.0, zero);
+        let far = loads(touch.normal, &reaction, meeting.far, -1.0, zero);
         if let Some(before) = before {
             self.store.restore(group, parted, &before);
             for lane in (0..count).filter(|lane| parted[*lane]) {

@@ -8,7 +8,7 @@ use crate::contacts::pulse::Pulse;
 use crate::contacts::react::{Clock, Normal, Reaction, Remembered, Touch, given, react};
 use crate::event::Encounter;
 use crate::interaction::Interaction;
-use crate::line::{Aligned, Line};
+use crate::line::Line;
 use crate::vector::{Of, cross};
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
@@ -28,7 +28,7 @@ pub(crate) const CHUNK: usize = 4;
 /// every step writes, and those that few do.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
-struct Quad {
+struct Group {
     history: Memory<Eight>,
     peaks: Peaks<Eight>,
     /// What radii multiply the median's force by; 1.
@@ -37,7 +37,7 @@ struct Quad {
 
 /// Contacts under one law; what is needed in every step stands apart from the rest.
 pub(crate) struct Store {
-    quads: Vec<Quad>,
+    groups: Vec<Group>,
     /// Elastic forces of the annuli of each group on the first bodies; N.
     elastic: Vec<Of<Eight>>,
     /// Annuli of a contact.
@@ -58,7 +58,7 @@ impl Store {
     pub fn new(surface: &Interaction, room: usize) -> Self {
         let groups = room.div_ceil(EIGHT);
         Self {
-            quads: Vec::with_capacity(groups),
+            groups: Vec::with_capacity(groups),
             elastic: Vec::with_capacity(groups * surface.annuli),
             annuli: surface.annuli,
             rolling: Vec::with_capacity(if surface.rolls() { groups } else { 0 }),
@@ -80,7 +80,7 @@ impl Store {
         }
         let own = self.len();
         if own.is_multiple_of(EIGHT) {
-            self.quads.push(Quad {
+            self.groups.push(Group {
                 history: Memory::ZERO,
                 peaks: Peaks::ZERO,
                 scale: Lanes::ZERO,
@@ -104,11 +104,11 @@ impl Store {
 
     pub(crate) fn parcel(&self, contact: usize) -> Parcel {
         let (group, lane) = (contact / EIGHT, contact % EIGHT);
-        let quad = &self.quads[group];
+        let eight = &self.groups[group];
         Parcel {
-            scale: quad.scale.0[lane],
-            history: quad.history.lane(lane),
-            peaks: quad.peaks.lane(lane),
+            scale: eight.scale.0[lane],
+            history: eight.history.lane(lane),
+            peaks: eight.peaks.lane(lane),
             annuli: self.annuli_of(contact),
             rolling: match self.rolling.get(group) {
                 Some(own) => own.map(|axis| axis.0[lane]),
@@ -128,7 +128,7 @@ impl Store {
         self.encounters.swap_remove(contact);
         self.pulses.swap_remove(contact);
         if last.is_multiple_of(EIGHT) {
-            self.quads.pop();
+            self.groups.pop();
             self.rolling.pop();
             self.elastic.truncate(self.elastic.len() - self.annuli);
         }
@@ -153,10 +153,10 @@ impl Store {
     fn put(&mut self, contact: usize, parcel: &Parcel) {
         let (group, lane) = (contact / EIGHT, contact % EIGHT);
         let annuli = self.annuli(group);
-        let quad = &mut self.quads[group];
-        quad.history.put_lane(lane, &parcel.history);
-        quad.peaks.put_lane(lane, &parcel.peaks);
-        quad.scale.0[lane] = parcel.scale;
+        let eight = &mut self.groups[group];
+        eight.history.put_lane(lane, &parcel.history);
+        eight.peaks.put_lane(lane, &parcel.peaks);
+        eight.scale.0[lane] = parcel.scale;
         let rolling = self.rolling.get_mut(group).zip(Some(&parcel.rolling));
         let elastic = self.elastic[annuli].iter_mut().zip(&parcel.annuli.0);
         for (lanes, own) in elastic.chain(rolling) {
@@ -185,18 +185,18 @@ impl Store {
     #[cold]
     pub(crate) fn turn(&mut self, (contact, displacement): Turning, clock: Clock) -> Option<Over> {
         let contact = contact as usize;
-        let (quad, lane) = (&mut self.quads[contact / EIGHT], contact % EIGHT);
-        let mut history = quad.history.lane(lane);
-        let mut peaks = quad.peaks.lane(lane);
+        let (eight, lane) = (&mut self.groups[contact / EIGHT], contact % EIGHT);
+        let mut history = eight.history.lane(lane);
+        let mut peaks = eight.peaks.lane(lane);
         let pulse = &mut self.pulses[contact];
         let now = (clock.time, displacement);
         let laws = &self.laws;
         let encounter = &mut self.encounters[contact];
         let law = || laws.at(contact);
         let over = turn(&mut history, &mut peaks, pulse, encounter, law, now);
-        quad.peaks.put_lane(lane, &peaks);
+        eight.peaks.put_lane(lane, &peaks);
         if over.is_some() {
-            quad.history.put_lane(lane, &history);
+            eight.history.put_lane(lane, &history);
         }
         over
     }
@@ -210,7 +210,7 @@ impl Store {
     /// Arguments of the law for a group of eight.
     #[inline(always)]
     pub(crate) fn given<R: EightNumbers>(&self, group: usize, touch: &Touch<R>, zero: R) -> Given {
-        let Quad { history, peaks, .. } = &self.quads[group];
+        let Group { history, peaks, .. } = &self.groups[group];
         let peak = zero.with_plain(peaks.displacement);
         zero.each_plain(given(touch, zero.with_plain(history.rate), peak))
     }
@@ -240,13 +240,13 @@ impl Store {
         zero: R,
     ) -> Reaction<R> {
         let annuli = self.annuli(group);
-        let quad = &mut self.quads[group];
-        let mut memory = quad.history.with_plain(zero);
-        let before = quad.peaks.with_plain(zero);
+        let eight = &mut self.groups[group];
+        let mut memory = eight.history.with_plain(zero);
+        let before = eight.peaks.with_plain(zero);
         let mut peaks = before;
         // The laws of fruit that differ have the factor within.
         let scale = match surface.spread {
-            None => zero.with_plain(quad.scale),
+            None => zero.with_plain(eight.scale),
             Some(_) => zero.constant(1.0),
         };
         let found = Normal {
@@ -266,9 +266,9 @@ impl Store {
             rolling: if rolls { Some(&mut moment) } else { None },
         };
         let reaction = react(found, surface, touch, clock, own);
-        quad.history = memory.plain();
+        eight.history = memory.plain();
         if peaks.growth_from(&before).any_above_zero() {
-            quad.peaks = peaks.plain();
+            eight.peaks = peaks.plain();
         }
         if rolls {
             self.rolling[group] = zero.each_plain(moment);
@@ -288,10 +288,10 @@ pub(crate) fn loads<R: EightNumbers>(
     arm: R,
     sign: f64,
     zero: R,
-) -> Aligned<[R; EIGHT]> {
+) -> [R; EIGHT] {
     let (force, twist) = (reaction.force, cross(normal, reaction.force));
     let rolling = reaction.rolling;
-    Aligned(R::rows(
+    R::rows(
         [force[0] * sign, force[1] * sign, force[2] * sign, zero],
         [
             twist[0] * arm + rolling[0] * sign,
@@ -299,7 +299,7 @@ pub(crate) fn loads<R: EightNumbers>(
             twist[2] * arm + rolling[2] * sign,
             zero,
         ],
-    ))
+    )
 }
 
 /// Adds one of [`loads`].

@@ -6,7 +6,6 @@ use crate::contacts::react::{Clock, Normal, Touch};
 use crate::contacts::store::{CHUNK, Load, NONE, Store, Turning, add_load, loads};
 use crate::event::{Encounter, Event, Partner};
 use crate::interaction::Interaction;
-use crate::line::Aligned;
 use crate::vector::Vector;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::real::Lanes;
@@ -287,7 +286,7 @@ impl Batch<'_> {
         let count = EIGHT.min(holders.len() - start);
         let on = (self.surface, self.clock);
         let reaction = store.react(group, touch, found, on, zero);
-        let Aligned(acting) = loads(touch.normal, &reaction, *arm, 1.0, zero);
+        let acting = loads(touch.normal, &reaction, *arm, 1.0, zero);
         let mut before = [Row::ZERO; EIGHT];
         before[..count].copy_from_slice(&forces[start..start + count]);
         let before = zero.columns(before);
