@@ -4,7 +4,7 @@
 //! each record follows behind its length in bytes.
 
 use std::fs::File;
-use std::io::{BufWriter, Read, Result as IoResult, Seek, Write};
+use std::io::{BufWriter, ErrorKind, Read, Result as IoResult, Seek, Write};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
 use windfall_files::provenance::VERSION;
@@ -125,9 +125,29 @@ pub(crate) fn remove_parts(directory: &Path, from: usize) -> Result<(), Error> {
             continue;
         };
         check_target(&directory.join(part_name(rank)))?;
+        check_partial(&directory.join(partial_name(rank)))?;
         std::fs::remove_file(&path).map_err(access(&path, "replace"))?;
     }
     Ok(())
+}
+
+/// Refuses to replace a file of somebody else that has the name of a part that is not whole.
+fn check_partial(path: &Path) -> Result<(), Error> {
+    let mut start = Vec::new();
+    let mut file = match File::open(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        file => file
+            .map_err(access(path, "read"))?
+            .take(2 * MAGIC.len() as u64),
+    };
+    file.read_to_end(&mut start).map_err(access(path, "read"))?;
+    // Behind the length of the first record.
+    match start.is_empty() || start.ends_with(&MAGIC) {
+        true => Ok(()),
+        false => Err(Error::AlreadyThere {
+            path: path.to_path_buf(),
+        }),
+    }
 }
 
 /// Gives all parts their names.
@@ -160,6 +180,7 @@ impl PartWriter {
         let path = directory.join(partial_name(head.number()));
         check_target(&directory.join(part_name(head.number())))?;
         check_plain(&path)?;
+        check_partial(&path)?;
         let file = File::create(&path).map_err(access(&path, "write"))?;
         let mut own = Self {
             path,
@@ -401,9 +422,14 @@ mod tests {
             }
             assert!(read < 4);
         }
+        PartWriter::create(&folder, &head).unwrap();
         let mut other = whole.clone();
         other[8] = b'X';
         std::fs::write(&path, &other).unwrap();
+        // Somebody else's file is not replaced.
+        assert!(PartWriter::create(&folder, &head).is_err());
+        assert!(remove_parts(&folder, 0).is_err());
+        assert_eq!(std::fs::read(&path).unwrap(), other);
         let problem = PartReader::open(&path, None).err().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
         assert!(problem.contains("no pulses"), "{problem}");
