@@ -10,7 +10,7 @@ use windfall_draw::theme::FigureTheme;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
-use windfall_files::write_file::write_whole;
+use windfall_files::write_file::{check_outputs, write_whole};
 
 /// Options of a picture.
 #[derive(Clone, Debug, Default)]
@@ -88,9 +88,17 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
         return Err(unusable("--out", "give a file that ends in .svg or .png"));
     }
     let mut frames = open_frames(path)?;
+    let directory = run_directory(path);
     let Some(last) = frames.frames.len().checked_sub(1) else {
-        return Err(frames_absent(&run_directory(path)));
+        return Err(frames_absent(&directory));
     };
+    let files = match out {
+        Some(file) => vec![file.to_path_buf()],
+        None => ["svg", "png"]
+            .map(|ending| directory.join(format!("picture.{ending}")))
+            .to_vec(),
+    };
+    check_outputs(files.iter().map(|file| Some(file.as_path())))?;
     if let Some(time) = request.time {
         let end = frames.frames[last].time;
         let within = time >= 0.0 && time <= end + frames.about.interval;
@@ -109,13 +117,6 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     let from = request.from.unwrap_or(FROM);
     let painting = scene_painting(&frames, &frame, from, most)?;
     let svg = painting.drawing.svg(request.theme.colours());
-    let directory = run_directory(path);
-    let files = match out {
-        Some(file) => vec![file.to_path_buf()],
-        None => ["svg", "png"]
-            .map(|ending| directory.join(format!("picture.{ending}")))
-            .to_vec(),
-    };
     for file in &files {
         let png = file.extension().is_some_and(|ending| ending == "png");
         match png {

@@ -226,6 +226,10 @@ fn run_all(
             if job >= all || stopped.load(Ordering::Relaxed) {
                 return;
             }
+            if progress(done.load(Ordering::Relaxed), PARTS * all).is_break() {
+                stopped.store(true, Ordering::Relaxed);
+                return;
+            }
             let told = AtomicUsize::new(0);
             let tell = |steps: usize, of: usize| {
                 let part = PARTS * steps / of.max(1);

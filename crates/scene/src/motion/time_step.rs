@@ -159,12 +159,21 @@ impl Impact<'_> {
 
     /// Contact duration; s.
     fn duration(&self) -> Result<f64, Error> {
-        // From a guess that is far too short to one that is fine.
-        let mut step = 1e-7;
-        for _ in 0..3 {
-            step = 0.002 * self.measured(step, AT_REST)?.duration;
+        // From steps of which a stiff contact may take few to one that is fine.
+        let mut step = (COARSE * self.radius / self.speed).min(LONGEST_GUESS);
+        let mut duration = loop {
+            match self.measured(step, AT_REST) {
+                Ok(own) if own.duration > 100.0 * step => break own.duration,
+                // A contact that does not end, and one that fails with any step.
+                Err(error @ Error::Value { .. }) => return Err(error),
+                Err(error) if step < SHORTEST_GUESS => return Err(error),
+                _ => step *= 0.1,
+            }
+        };
+        for _ in 0..2 {
+            duration = self.measured(0.002 * duration, AT_REST)?.duration;
         }
-        Ok(step / 0.002)
+        Ok(duration)
     }
 
     /// The impact with a time step.
@@ -229,6 +238,12 @@ impl Impact<'_> {
     }
 }
 
+/// Way in the first step by which a contact duration is looked for, over the radius; 1.
+const COARSE: f64 = 1e-3;
+/// The longest such step; s.
+const LONGEST_GUESS: f64 = 1e-3;
+/// Impacts that fail even with a shorter step fail with any; s.
+const SHORTEST_GUESS: f64 = 1e-7;
 /// Steps after which a contact counts as one that does not end.
 const MOST_STEPS: usize = 2_000_000;
 /// On a wall that does not shake.

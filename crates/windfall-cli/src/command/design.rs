@@ -3,6 +3,7 @@
 use crate::args::design::{DesignArguments, DesignCommand};
 use crate::args::format::Format;
 use crate::show::{message, write_json, write_result};
+use windfall_files::write_file::check_outputs;
 use windfall_tables::design::document::design_document;
 use windfall_tables::design::file::{save_design, write_design};
 use windfall_tables::design::request::{Criterion, DesignKind};
@@ -29,6 +30,8 @@ pub fn run(arguments: &DesignArguments) -> anyhow::Result<()> {
             (&own.all, kind)
         }
     };
+    // A search takes a while.
+    check_outputs([options.out.as_deref()])?;
     let outcome = make_design(&kind, &options.request)?;
     if let Some(path) = &options.out {
         save_design(path, &outcome.design, &outcome.about)?;
