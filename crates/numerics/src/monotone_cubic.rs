@@ -86,6 +86,15 @@ impl MonotoneCubic {
         ends.chain(inside).fold(0.0, f64::max)
     }
 
+    /// The smallest and the largest value between the first place and the last.
+    pub fn range(&self) -> [f64; 2] {
+        // Between two points it goes nowhere but from one to the other.
+        let values = self.value.iter();
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], own| {
+            [own.min(low), own.max(high)]
+        })
+    }
+
     /// The last place.
     pub fn end(&self) -> f64 {
         self.at.last().copied().unwrap_or_default()

@@ -3,6 +3,7 @@
 use crate::contacts::store::NONE;
 use crate::contacts::wall_contacts::Lifted;
 use crate::line::{HalfLine, Line};
+use crate::periods::Periods;
 use crate::vector::{Rotation, Vector, length};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -27,6 +28,8 @@ pub(crate) struct Bodies {
     pub offset: Vec<Vector>,
     /// Contacts with walls, while the list is rebuilt.
     pub lifted: Vec<Vec<Lifted>>,
+    /// Along which axes bodies have images.
+    pub periods: Periods,
 }
 
 impl Bodies {
@@ -53,6 +56,7 @@ impl Bodies {
             fruit: &self.fruit,
             clump: &self.clump,
             offset: &self.offset,
+            periods: &self.periods,
         };
         all.from(first)
     }
@@ -87,6 +91,7 @@ pub(crate) struct BodiesFrom<'a> {
     pub fruit: &'a [u32],
     pub clump: &'a [u32],
     pub offset: &'a [Vector],
+    pub periods: &'a Periods,
 }
 
 impl<'a> BodiesFrom<'a> {
@@ -99,6 +104,7 @@ impl<'a> BodiesFrom<'a> {
             fruit: &self.fruit[first..],
             clump: &self.clump[first..],
             offset: &self.offset[first..],
+            periods: self.periods,
         }
     }
 
@@ -108,9 +114,17 @@ impl<'a> BodiesFrom<'a> {
     }
 
     /// How far two bodies overlap; m.
-    pub(crate) fn overlap(&self, [i, j]: [u32; 2]) -> f64 {
-        let (a, b) = (&self.place[i as usize], &self.place[j as usize]);
-        a[3] + b[3] - length([b[0] - a[0], b[1] - a[1], b[2] - a[2]])
+    pub(crate) fn overlap(&self, pair: [u32; 2]) -> f64 {
+        let [a, b] = pair.map(|body| self.place[body as usize][3]);
+        a + b - length(self.between(pair))
+    }
+
+    /// From one body to another, or to the nearest of its images; m.
+    #[inline(always)]
+    pub(crate) fn between(&self, pair: [u32; 2]) -> Vector {
+        let [a, b] = pair.map(|body| &self.place[body as usize]);
+        self.periods
+            .nearest([b[0] - a[0], b[1] - a[1], b[2] - a[2]])
     }
 }
 
@@ -179,8 +193,11 @@ pub(crate) fn sort_into_cells(bodies: &mut Bodies, skin: f64) -> (Cells, Vec<u32
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     low: Vector,
-    size: f64,
+    /// Of a cell along each axis; m.
+    size: Vector,
     number: [usize; 3],
+    /// Along which axes the last cell is beside the first.
+    round: [bool; 3],
     start: Vec<u32>,
 }
 
@@ -204,14 +221,32 @@ impl Cells {
         }
         let mut size = (2.0 * radius + skin).max(f64::MIN_POSITIVE);
         let most = (MOST_CELLS * bodies.len() + 64) as f64;
+        let ends = [0, 1, 2].map(|axis| bodies.periods.ends(axis));
+        for (axis, ends) in ends.into_iter().enumerate() {
+            if let Some(ends) = ends {
+                [low[axis], high[axis]] = ends;
+            }
+        }
+        let round = ends.map(|own| own.is_some());
         loop {
-            let number = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / size).floor() + 1.0);
+            let number = [0, 1, 2].map(|axis| {
+                let whole = ((high[axis] - low[axis]) / size).floor();
+                match round[axis] {
+                    true => whole.max(1.0),
+                    false => whole + 1.0,
+                }
+            });
             if number.iter().product::<f64>() <= most {
-                let number = number.map(|each| each as usize);
+                // Cells of a periodic axis fill it.
+                let size = [0, 1, 2].map(|axis| match round[axis] {
+                    true => (high[axis] - low[axis]) / number[axis],
+                    false => size,
+                });
                 return Self {
                     low,
                     size,
-                    number,
+                    number: number.map(|each| each as usize),
+                    round,
                     start: Vec::new(),
                 };
             }
@@ -230,9 +265,25 @@ impl Cells {
     /// Coordinates of the cell of a place.
     fn coordinates(&self, place: &[f64; 4]) -> [usize; 3] {
         [0, 1, 2].map(|axis| {
-            let cell = ((place[axis] - self.low[axis]) / self.size) as usize;
-            cell.min(self.number[axis] - 1)
+            let at = (place[axis] - self.low[axis]) / self.size[axis];
+            let number = self.number[axis];
+            match self.round[axis] {
+                // Spheres of a clump may be beyond an end.
+                true => (at.floor() as i64).rem_euclid(number as i64) as usize,
+                false => (at as usize).min(number - 1),
+            }
         })
+    }
+
+    /// The cells beside one along an axis, and itself, each once: beyond the number of cells they
+    /// begin anew.
+    fn beside(&self, axis: usize, at: usize) -> Range<usize> {
+        let number = self.number[axis];
+        match self.round[axis] {
+            true if number <= 3 => 0..number,
+            true => at + number - 1..at + number + 2,
+            false => at.saturating_sub(1)..(at + 2).min(number),
+        }
     }
 
     /// Number of a cell: tile by tile.
@@ -249,11 +300,18 @@ impl Cells {
     /// Calls `with` for every body of the cells around a place that stands behind `body`.
     fn later_neighbours(&self, body: usize, place: &[f64; 4], mut with: impl FnMut(usize)) {
         let at = self.coordinates(place);
-        let range = |axis: usize| at[axis].saturating_sub(1)..(at[axis] + 2).min(self.number[axis]);
+        let range = |axis: usize| self.beside(axis, at[axis]);
+        let within = |axis: usize, own: usize| {
+            let mut own = own;
+            while own >= self.number[axis] {
+                own -= self.number[axis];
+            }
+            own
+        };
         for k in range(2) {
             for j in range(1) {
                 for i in range(0) {
-                    let cell = self.number_of([i, j, k]);
+                    let cell = self.number_of([within(0, i), within(1, j), within(2, k)]);
                     let (from, to) = (self.start[cell] as usize, self.start[cell + 1] as usize);
                     for other in from.max(body + 1)..to {
                         with(other);
@@ -307,7 +365,8 @@ impl PairTable {
                     cells.later_neighbours(first, a, |second| {
                         let b = &bodies.place[second];
                         let reach = a[3] + b[3] + skin;
-                        let (x, y, z) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+                        let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+                        let [x, y, z] = bodies.periods.nearest(between);
                         if x * x + y * y + z * z < reach * reach {
                             let lower = bodies.fruit[first].min(bodies.fruit[second]);
                             if foreign.get(lower as usize).is_some_and(|own| *own) {

@@ -185,6 +185,7 @@ fn meet<R: EightNumbers>(
     let [u, w] = [zero.columns(rows[2]), zero.columns(rows[3])];
     let [p, q] = [zero.columns(rows[4]), zero.columns(rows[5])];
     let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+    let between = bodies.periods.nearest(between);
     let (left, right) = (a[3], b[3]);
     let reach = left + right;
     let distance = dot(between, between).sqrt();

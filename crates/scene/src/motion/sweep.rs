@@ -163,6 +163,7 @@ impl Simulation {
             fruit: &self.bodies.fruit[still..],
             clump: &self.bodies.clump[still..],
             offset: &self.bodies.offset[still..],
+            periods: &self.bodies.periods,
         };
         let mut contacts = Cut::of(&mut self.contacts);
         let mut outs = Cut::of(outs);
