@@ -116,6 +116,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn closed_form_smallest_and_largest_values() {
+        let own = MonotoneCubic::new(&[0.0, 1.0, 1.5, 4.0], &[0.2, -0.3, 0.9, 0.1]);
+        assert_eq!(own.range(), [-0.3, 0.9]);
+        let inside = |n: usize| own.evaluate(n as f64 * 0.01).0;
+        assert!((0..=400).map(inside).all(|own| (-0.3..=0.9).contains(&own)));
+    }
+
+    #[test]
     fn closed_form_a_parabola_and_a_line() {
         // Through three points of a rising parabola the end slopes are exact.
         let at = [0.0, 1.0, 3.0];

@@ -2,9 +2,9 @@
 
 use crate::binary;
 use crate::binary::{Binary, no_value};
+use crate::contacts::bodies::Bodies;
 use crate::contacts::clump_contacts::{ClumpContacts, Touching, TouchingWall};
 use crate::contacts::contact::Parcel;
-use crate::contacts::neighbours::Bodies;
 use crate::contacts::wall_contacts::Lifted;
 use crate::contacts::wall_forces::WallMeeting;
 use crate::energy::Account;

@@ -1,7 +1,7 @@
 //! The sphere of a fruit that makes a contact: a body, or one that fits into its spheroid.
 
+use crate::contacts::bodies::Bodies;
 use crate::contacts::contact::{Moment, spot};
-use crate::contacts::neighbours::Bodies;
 use crate::contacts::store::Load;
 use crate::line::HalfLine;
 use crate::shape::spheroid::{Spine, closest_spheres};

@@ -1,7 +1,7 @@
 //! Contacts of two fruit, compiled once for each law.
 
+use crate::contacts::bodies::BodiesFrom;
 use crate::contacts::contact::{Moment, Outcome, Over, Parcel, encounter, parted, spot, too_deep};
-use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::pair_forces::{Batch, Pair};
 use crate::contacts::react::{Clock, Touch, direction_before, surface_motion};
 use crate::contacts::store::{Load, Store, Turning};

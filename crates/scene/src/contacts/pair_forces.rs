@@ -1,8 +1,8 @@
 //! Forces of pairs that touch, eight at a time.
 
+use crate::contacts::bodies::BodiesFrom;
 use crate::contacts::contact::LARGEST_OVERLAP;
 use crate::contacts::law_column::Eight;
-use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::react::{Clock, Normal, Touch, direction_before, surface_motion};
 use crate::contacts::store::{CHUNK, Load, Store, Turning, add_load, loads};
 use crate::interaction::Interaction;

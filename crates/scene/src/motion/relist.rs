@@ -1,7 +1,8 @@
 //! Rebuilds the neighbour list, carrying contacts over.
 
+use crate::contacts::cells::sort_into_cells;
 use crate::contacts::contact::Parcel;
-use crate::contacts::neighbours::{PairTable, sort_into_cells};
+use crate::contacts::neighbours::PairTable;
 use crate::contacts::pair_contacts::PairContacts;
 use crate::contacts::pair_forces::Pair;
 use crate::contacts::store::{Load, NONE};

@@ -1,8 +1,9 @@
 //! A scene from step to step.
 
+use crate::contacts::bodies::Bodies;
 use crate::contacts::clump_contacts::{self, ClumpContacts};
 use crate::contacts::contact::{Moment, Outcome, Over, lasting};
-use crate::contacts::neighbours::{Bodies, PairTable};
+use crate::contacts::neighbours::PairTable;
 use crate::contacts::pair_contacts::PairContacts;
 use crate::contacts::react::{Clock, LOOK};
 use crate::contacts::store::{Load, NONE};
