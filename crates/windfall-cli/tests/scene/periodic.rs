@@ -170,7 +170,7 @@ fn rejects_what_cannot_repeat() {
         (
             "high = [0.7,",
             "high = [1.7,",
-            41,
+            42,
             "which repeats after 0.6 m",
         ),
     ] {
