@@ -9,7 +9,7 @@ use crate::ranks::checkpoint::{Kept, check_states, parts_with_deck, read_kept};
 use crate::ranks::library::{find_library, unusable};
 use crate::ranks::merge::{Pulses, start_ranks};
 use crate::ranks::part::{part_name, scene_of};
-use crate::simplify::simplified;
+use crate::simplify::{check_open, simplified};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
@@ -124,6 +124,7 @@ fn ready(path: &Path, engine: Engine, request: &DeckRequest) -> Result<Ready, Er
         );
         return Err(wrong(engine, problem));
     }
+    check_open(&plan, engine)?;
     if plan.scene.fruit.iter().any(|fruit| fruit.clump.is_some()) {
         let problem = "it cannot represent this scene (--engine windfall can): its ovate fruit touch \
                        a partner once, where the deepest of their spheres does, and the engine's \

@@ -1,8 +1,24 @@
 //! What of a scene no other engine has.
 
+use crate::program::wrong;
+use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::file::read::ScenePlan;
+
+/// Refuses scenes that repeat.
+///
+/// # Errors
+/// The scene is periodic: contacts are found from the places of fruit, and those that an engine
+/// tells jump from one end to the other.
+pub(crate) fn check_open(plan: &ScenePlan, engine: Engine) -> Result<(), Error> {
+    if !plan.scene.periods().repeat() {
+        return Ok(());
+    }
+    let problem = "it cannot run a scene that repeats ([scene] periodic): run it with --engine \
+                   windfall, or leave `periodic` out and draw the whole belt";
+    Err(wrong(engine, problem.to_owned()))
+}
 
 /// Drops what no other engine has, with findings.
 pub(crate) fn simplified(plan: &mut ScenePlan, engine: Engine) -> Vec<FindingOutcome> {

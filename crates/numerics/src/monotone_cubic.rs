@@ -86,6 +86,15 @@ impl MonotoneCubic {
         ends.chain(inside).fold(0.0, f64::max)
     }
 
+    /// The smallest and the largest value between the first place and the last.
+    pub fn range(&self) -> [f64; 2] {
+        // Between two points it goes nowhere but from one to the other.
+        let values = self.value.iter();
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], own| {
+            [own.min(low), own.max(high)]
+        })
+    }
+
     /// The last place.
     pub fn end(&self) -> f64 {
         self.at.last().copied().unwrap_or_default()
@@ -105,6 +114,14 @@ fn end_slope(width: f64, next: f64, secant: f64, following: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn closed_form_smallest_and_largest_values() {
+        let own = MonotoneCubic::new(&[0.0, 1.0, 1.5, 4.0], &[0.2, -0.3, 0.9, 0.1]);
+        assert_eq!(own.range(), [-0.3, 0.9]);
+        let inside = |n: usize| own.evaluate(n as f64 * 0.01).0;
+        assert!((0..=400).map(inside).all(|own| (-0.3..=0.9).contains(&own)));
+    }
 
     #[test]
     fn closed_form_a_parabola_and_a_line() {

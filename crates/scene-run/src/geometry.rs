@@ -96,7 +96,7 @@ impl Bounds {
 const MOST_POINTS: usize = 1 << 16;
 
 /// The walls of a scene as faces, and the box around all that has an end: walls at rest, and
-/// the places at which fruit come.
+/// the places at which fruit come; along a periodic axis from end to end.
 pub fn geometry_of(scene: &Scene) -> (Vec<WallGeometry>, Bounds) {
     let mut points: Vec<Vector> = Vec::new();
     for fruit in &scene.fruit {
@@ -120,7 +120,14 @@ pub fn geometry_of(scene: &Scene) -> (Vec<WallGeometry>, Bounds) {
             points.extend(wall.shape.faces([[0.0; 3]; 2]).vertices);
         }
     }
-    let bounds = Bounds::around(points);
+    let mut bounds = Bounds::around(points);
+    for (axis, ends) in scene.periodic.iter().enumerate() {
+        // Fruit come everywhere between the ends.
+        if let Some([low, high]) = ends {
+            bounds.low[axis] = bounds.low[axis].min(*low);
+            bounds.high[axis] = bounds.high[axis].max(*high);
+        }
+    }
     let walls = scene.walls.iter();
     let walls = walls.map(|wall| geometry(scene, wall, &bounds)).collect();
     (walls, bounds)

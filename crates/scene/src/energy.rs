@@ -47,7 +47,8 @@ pub struct Energy {
     pub lost_by_drag: f64,
     /// Done by moving walls.
     pub done_by_walls: f64,
-    /// Of fruit that came less that of fruit that left.
+    /// Of fruit that came less that of fruit that left; and what places in gravity change by where
+    /// fruit go over a periodic end.
     #[serde(skip)]
     pub brought: f64,
 }

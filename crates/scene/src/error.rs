@@ -27,6 +27,16 @@ pub enum Error {
         /// The other.
         second: String,
     },
+    /// A wall is not the same one period on.
+    #[error("the wall \"{wall}\" cannot be repeated along {axis}: {problem}")]
+    Unrepeatable {
+        /// Its name.
+        wall: String,
+        /// The periodic axis.
+        axis: char,
+        /// Why, and what to do.
+        problem: &'static str,
+    },
     /// A body overlaps another so much that the law means nothing.
     #[error(
         "at {time:.6} s {} overlaps {partner} by {overlap:.3e} m, {share:.0} % of its radius: take \

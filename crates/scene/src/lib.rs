@@ -19,6 +19,7 @@ pub mod follow;
 pub mod interaction;
 mod line;
 pub mod motion;
+pub mod periods;
 pub mod population;
 pub mod reach;
 pub mod room;

@@ -3,7 +3,6 @@
 use crate::contacts::wall_contacts::WallState;
 use crate::scene::{Scene, Sink};
 use crate::shape::mesh::bounds;
-use crate::shape::wall::Wall;
 use crate::vector::{Vector, add, length, scaled, subtract};
 use std::collections::BinaryHeap;
 
@@ -19,15 +18,18 @@ const MOST: f64 = 1e6;
 const AROUND: f64 = 4.0;
 
 /// Whether a sphere of a radius can be moved from any of some places to any sink between the
-/// walls that stay; `None` where the scene is too large to tell.
+/// walls that stay; `None` where the scene is too large to tell, or repeats.
 ///
 /// Cells of a grid count as free where any of their points may be, so that "no" is certain,
 /// and gaps a little narrower than the sphere pass for wide enough: "yes" is not. Walls that
 /// move, and gravity, are left out.
 pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<bool> {
     let walls = scene.walls.iter().filter(|wall| wall.motion.stays());
-    let walls: Vec<Wall> = walls.cloned().collect();
-    let corners = walls.iter().flat_map(|wall| wall.shape.corners());
+    let standing = Scene {
+        walls: walls.cloned().collect(),
+        ..Scene::default()
+    };
+    let corners = standing.walls.iter().flat_map(|wall| wall.shape.corners());
     // Around the walls everything is free: who gets there gets to every sink beyond.
     let (low, high) = bounds(corners.chain(starts.iter().copied()));
     let margin = [AROUND * radius; 3];
@@ -38,7 +40,7 @@ pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<b
     let volume = size.iter().product::<f64>();
     let cell = (FINE * radius).max((volume / MOST).cbrt());
     let fine = cell <= COARSE * radius;
-    if !fine || starts.is_empty() {
+    if !fine || starts.is_empty() || scene.periods().repeat() {
         return None;
     }
     let grid = Grid {
@@ -49,7 +51,7 @@ pub fn reaches_a_sink(scene: &Scene, radius: f64, starts: &[Vector]) -> Option<b
             (0..3).any(|axis| own.low[axis] < low[axis] || own.high[axis] > low[axis] + size[axis])
         }),
     };
-    Some(grid.search(&WallState::new(&walls), radius, starts, &scene.sinks))
+    Some(grid.search(&WallState::new(&standing), radius, starts, &scene.sinks))
 }
 
 /// Cells in a box.
@@ -148,6 +150,7 @@ mod tests {
     use super::*;
     use crate::shape::motion::{How, Motion};
     use crate::shape::surface::{Plate, Shape};
+    use crate::shape::wall::Wall;
 
     /// A closed box of 1 m with a square hole in its floor, above a sink.
     fn hopper(hole: f64) -> Scene {

@@ -32,15 +32,17 @@ const ROOM: f64 = 0.01;
 
 /// The first fruit that comes in where a wall is at that time.
 pub fn first_in_wall(scene: &Scene) -> Option<InWall> {
-    let mut walls = WallState::new(&scene.walls);
+    let mut walls = WallState::new(scene);
+    let periods = scene.periods();
     let mut near = Vec::new();
     scene.fruit.iter().enumerate().find_map(|(number, fruit)| {
         walls.move_to(&scene.walls, fruit.time, 0.0);
         near.clear();
         let room = (1.0 - ROOM) * fruit.radius;
-        walls.find_near(fruit.place, room, &mut near);
+        let place = periods.wrapped(fruit.place);
+        walls.find_near(place, room, &mut near);
         let overlaps = |&facet: &u32| {
-            let distance = walls.closest(facet, fruit.place).distance;
+            let distance = walls.closest(facet, place).distance;
             (distance < room).then(|| InWall {
                 fruit: number,
                 wall: walls.facets[facet as usize].0 as usize,
@@ -69,7 +71,7 @@ pub fn first_doubled(scene: &Scene) -> Option<Doubled> {
     if !smallest.is_finite() {
         return None;
     }
-    let mut walls = WallState::new(&scene.walls);
+    let mut walls = WallState::new(scene);
     walls.move_to(&scene.walls, 0.0, 0.0);
     let mut near = Vec::new();
     for (number, wall) in scene.walls.iter().enumerate() {

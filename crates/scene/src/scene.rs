@@ -4,9 +4,12 @@ use crate::annuli::MOST_ANNULI;
 use crate::error::Error;
 use crate::event::{Event, Partner};
 use crate::interaction::{Draws, Interaction};
+use crate::periods::Periods;
+use crate::shape::beyond::{Unrepeatable, continued};
 use crate::shape::clump::Clump;
+use crate::shape::surface::Facet;
 use crate::shape::wall::Wall;
-use crate::vector::{UNTURNED, Vector};
+use crate::vector::{UNTURNED, Vector, add, scaled};
 use std::collections::BTreeMap;
 
 /// A scene: what is there, and what happens where it touches.
@@ -26,6 +29,9 @@ pub struct Scene {
     pub gravity: Vector,
     /// Drag of the air, if it counts.
     pub air: Option<Air>,
+    /// Low and high of each axis along which the scene repeats: what leaves through one end comes
+    /// in through the other; m.
+    pub periodic: [Option<[f64; 2]>; 3],
     /// Time step; s.
     pub time_step: f64,
 }
@@ -125,7 +131,93 @@ impl Fruit {
     pub(crate) const ORIENTATION: [f64; 4] = UNTURNED;
 }
 
+impl Sink {
+    /// Whether a place, or an image of it, is in the box.
+    pub fn holds(&self, place: Vector, periods: &Periods) -> bool {
+        let middle = scaled(add(self.low, self.high), 0.5);
+        let place = periods.image(place, middle);
+        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&place[axis]))
+    }
+}
+
+/// Names of the axes.
+pub const AXES: [char; 3] = ['x', 'y', 'z'];
+const PERIODS: [&str; 3] = [
+    "the period along x",
+    "the period along y",
+    "the period along z",
+];
+
+/// Skin of the list of neighbours over the mean radius; 1.
+const SKIN: f64 = 0.16;
+
+/// Periods over the largest diameter at least; 1.
+const SHORTEST_PERIOD: f64 = 3.0;
+
 impl Scene {
+    /// Along which axes it repeats.
+    pub fn periods(&self) -> Periods {
+        Periods::new(&self.periodic)
+    }
+
+    /// How far apart bodies are listed as neighbours, and what of that is needed without any
+    /// motion; m.
+    pub(crate) fn skin(&self) -> [f64; 2] {
+        let mean = self.fruit.iter().map(|fruit| fruit.radius).sum::<f64>();
+        // Surfaces of ovate fruit lie a little outside of the spheres by which they are listed.
+        let clumps = self.fruit.iter().filter_map(|fruit| fruit.clump.as_ref());
+        let lacks = 2.0 * clumps.map(Clump::lacks).fold(0.0, f64::max);
+        [SKIN * mean / self.fruit.len().max(1) as f64 + lacks, lacks]
+    }
+
+    /// How far two fruit are apart at most that are listed as neighbours; m.
+    fn farthest_neighbours(&self) -> f64 {
+        let radii = self.fruit.iter().map(|fruit| fruit.radius);
+        2.0 * radii.fold(0.0, f64::max) + self.skin()[0]
+    }
+
+    /// Parts of a wall, with those that continue it beyond the ends.
+    pub(crate) fn parts_of(&self, wall: &Wall) -> Result<Vec<Facet>, Unrepeatable> {
+        // A body may have left the room by half a fruit and the skin.
+        continued(wall, &self.periods(), 2.0 * self.farthest_neighbours())
+    }
+
+    /// The first wall that is not the same one period on, by its number.
+    pub fn first_unrepeatable(&self) -> Option<(usize, Unrepeatable)> {
+        let mut walls = self.walls.iter().enumerate();
+        walls.find_map(|(number, wall)| Some((number, self.parts_of(wall).err()?)))
+    }
+
+    /// Checks that each fruit has one nearest image.
+    ///
+    /// # Errors
+    /// A period is too short for the largest fruit, or is no length.
+    pub fn check_periods(&self) -> Result<(), Error> {
+        let radii = self.fruit.iter().map(|fruit| fruit.radius);
+        let shortest = 2.0 * SHORTEST_PERIOD * radii.fold(0.0, f64::max);
+        let shortest = shortest.max(2.0 * self.farthest_neighbours());
+        for (what, ends) in PERIODS.into_iter().zip(self.periodic) {
+            let Some([low, high]) = ends else {
+                continue;
+            };
+            let value = high - low;
+            let wrong = |problem| {
+                Err(Error::Value {
+                    what,
+                    value,
+                    problem,
+                })
+            };
+            if !(low < high && value.is_finite()) {
+                return wrong("its ends must be numbers, the lower one first");
+            }
+            if value < shortest {
+                return wrong("it must be at least three times the diameter of the largest fruit");
+            }
+        }
+        Ok(())
+    }
+
     /// The interaction of two materials.
     ///
     /// # Errors
@@ -190,6 +282,15 @@ impl Scene {
                 }
                 positive("the number of spheres of a clump", own.spheres.len() as f64)?;
             }
+        }
+        self.check_periods()?;
+        if let Some((wall, Unrepeatable { axis, problem })) = self.first_unrepeatable() {
+            let wall = self.walls[wall].name.clone();
+            return Err(Error::Unrepeatable {
+                wall,
+                axis: AXES[axis],
+                problem,
+            });
         }
         let kinds: std::collections::BTreeSet<usize> =
             self.fruit.iter().map(|fruit| fruit.material).collect();

@@ -2,9 +2,9 @@
 
 use crate::binary;
 use crate::binary::{Binary, no_value};
+use crate::contacts::bodies::Bodies;
 use crate::contacts::clump_contacts::{ClumpContacts, Touching, TouchingWall};
 use crate::contacts::contact::Parcel;
-use crate::contacts::neighbours::Bodies;
 use crate::contacts::wall_contacts::Lifted;
 use crate::contacts::wall_forces::WallMeeting;
 use crate::energy::Account;
@@ -248,6 +248,7 @@ impl Simulation {
     /// forgets it: where checkpoints are made belongs to what a run is.
     /// Events and leavings that were not taken yet stay here, and are not part of the state.
     pub fn checkpoint(&mut self) -> Saved<'_> {
+        self.wrap();
         self.lift();
         let fruit = self.fruit();
         let old = std::mem::take(&mut self.bodies);
@@ -294,7 +295,10 @@ impl Simulation {
 
     /// Fruit of a state, by number, in place of those that are there.
     pub(crate) fn enter_all(&mut self, fruit: &[FruitState]) {
-        self.bodies = Bodies::default();
+        self.bodies = Bodies {
+            periods: self.scene.periods(),
+            ..Bodies::default()
+        };
         self.clumps = Vec::new();
         fruit.iter().for_each(|own| self.enter(own));
     }

@@ -14,6 +14,7 @@ mod loads;
 mod many_fruit;
 mod mesh;
 mod oblique_impacts;
+mod periodic;
 mod resume;
 mod share;
 mod single_impacts;

@@ -8,7 +8,7 @@ use crate::ranks::following::{Following, Task};
 use crate::ranks::library::VERSION;
 use crate::ranks::part::scene_of;
 use crate::running::make_room;
-use crate::simplify::simplified;
+use crate::simplify::{check_open, simplified};
 use std::io::Write;
 use std::path::PathBuf;
 use windfall_files::error::Error;
@@ -96,6 +96,7 @@ fn run_alone(request: &RankRequest) -> Result<(), Error> {
     let (frame_steps, commands) =
         split(&deck).ok_or_else(|| failed(format!("{} is no deck of windfall", path.display())))?;
     let mut plan = read_scene(file)?;
+    check_open(&plan, Engine::Lammps)?;
     time_step(&mut plan)?;
     let scene = scene_of(&plan);
     simplified(&mut plan, Engine::Lammps);

@@ -10,6 +10,7 @@ pub(crate) mod fruit;
 pub(crate) mod key;
 pub(crate) mod mesh;
 pub(crate) mod moves;
+pub(crate) mod periodic;
 pub(crate) mod properties;
 pub mod read;
 pub(crate) mod record;

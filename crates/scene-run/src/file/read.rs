@@ -5,6 +5,7 @@ use crate::file::contacts::contacts_of;
 use crate::file::fruit::fruit_of;
 use crate::file::key::{Section, check_names};
 use crate::file::moves::add_moves;
+use crate::file::periodic::{check_periodic, periodic_of};
 use crate::file::properties::{in_order, with_properties};
 use crate::file::record::{RecordPlan, record_of};
 use crate::file::room::{check_room, drawn_fruit};
@@ -142,8 +143,10 @@ pub fn scene_of(source: &TomlSource) -> Result<ScenePlan, Error> {
             .as_ref()
             .map(|air| air_of(source, air))
             .transpose()?,
+        periodic: periodic_of(&table, &file)?,
         time_step: timing.step,
     };
+    check_periodic(&table, &file, &scene)?;
     // An automatic step is found later.
     let checked = Scene {
         time_step: if timing.step == 0.0 { 1.0 } else { timing.step },

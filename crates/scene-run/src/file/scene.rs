@@ -62,8 +62,19 @@ pub struct SceneSection {
     pub time_step_error: Option<Spanned<QuantityText>>,
     /// When the scene ends.
     pub end: Option<Spanned<QuantityText>>,
+    /// Axes along which the scene repeats.
+    pub periodic: Option<Spanned<PeriodicFile>>,
     /// Time of the scene between checkpoints, or "never".
     pub checkpoint: Option<Spanned<QuantityText>>,
+}
+
+/// `periodic`: both ends along an axis, the lower one first; m.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PeriodicFile {
+    pub x: Option<Spanned<[f64; 2]>>,
+    pub y: Option<Spanned<[f64; 2]>>,
+    pub z: Option<Spanned<[f64; 2]>>,
 }
 
 /// Gravity in a file.

@@ -82,6 +82,7 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
         sinks,
         gravity,
         air,
+        periodic,
         time_step,
     } = scene;
     let mut parts = vec![
@@ -104,6 +105,9 @@ pub fn parts_of(plan: &ScenePlan) -> Parts {
             &start.as_ref().map(|own| (&own.name, own.time)),
         ),
     ];
+    if scene.periods().repeat() {
+        parts.push(part("periodic", periodic));
+    }
     for (pair, interaction) in interactions {
         let name = format!(
             "contacts of {} and {}",

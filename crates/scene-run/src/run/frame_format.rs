@@ -56,6 +56,10 @@ pub struct FramesAbout {
     pub walls: Vec<WallAbout>,
     /// The box around walls at rest and the places at which fruit come; m.
     pub bounds: Bounds,
+    /// Length after which the scene repeats along each axis, 0 along an open one; m.
+    #[serde(default)]
+    #[schema(required = true, value_type = (f64, f64, f64))]
+    pub periods: [f64; 3],
 }
 
 /// A fruit in a frame.

@@ -169,6 +169,10 @@ fn start_of(plan: &ScenePlan, interval: f64) -> Result<Vec<u8>, Error> {
         fruit: plan.scene.fruit.len(),
         walls: walls.iter().map(|wall| wall.about.clone()).collect(),
         bounds,
+        periods: plan
+            .scene
+            .periodic
+            .map(|own| own.map_or(0.0, |[low, high]| high - low)),
     };
     let mut json = serde_json::to_vec(&about).map_err(|error| Error::ResultUnwritable {
         item: plan.title.clone(),

@@ -39,12 +39,14 @@ fn parts_of_state(plan: &ScenePlan) -> Parts {
         walls,
         fruit,
         sinks,
+        periodic,
         ..
     } = &plan.scene;
     let mut parts = vec![part(
         "[[fruit]] or the seed, of which fruit are drawn",
         fruit,
     )];
+    parts.push(part("periodic of [scene]", periodic));
     for (number, own) in materials.iter().enumerate() {
         parts.push(part(&format!("material \"{own}\""), &(number, own)));
     }

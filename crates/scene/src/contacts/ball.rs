@@ -1,7 +1,7 @@
 //! The sphere of a fruit that makes a contact: a body, or one that fits into its spheroid.
 
+use crate::contacts::bodies::Bodies;
 use crate::contacts::contact::{Moment, spot};
-use crate::contacts::neighbours::Bodies;
 use crate::contacts::store::Load;
 use crate::line::HalfLine;
 use crate::shape::spheroid::{Spine, closest_spheres};
@@ -112,7 +112,9 @@ impl Ball {
     ///
     /// * `pair`: bodies of them to begin with
     pub(crate) fn closest(pair: [usize; 2], bodies: &Bodies, now: &Moment) -> [[Self; 2]; 2] {
-        let own = pair.map(|body| Self::of(body, bodies));
+        let mut own = pair.map(|body| Self::of(body, bodies));
+        // The second is the nearest of its images.
+        own[1].centre = bodies.periods.image(own[1].centre, own[0].centre);
         let spines = own.each_ref().map(|own| own.spine(bodies, now));
         let centres = own.each_ref().map(|own| own.centre);
         let from = [0, 1].map(|side| spines[side].map_or(0.0, |_| bodies.offset[pair[side]][0]));

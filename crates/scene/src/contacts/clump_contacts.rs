@@ -6,10 +6,10 @@
 //! into it, found along its axis from the deepest of those that are bodies.
 
 use crate::contacts::ball::Ball;
+use crate::contacts::bodies::Bodies;
 use crate::contacts::contact::{
     LARGEST_OVERLAP, Moment, Outcome, Over, Parcel, encounter, parted, too_deep, turn,
 };
-use crate::contacts::neighbours::Bodies;
 use crate::contacts::react::{
     Clock, Remembered, Touch, direction_before, given, normal_of, react, surface_motion,
 };

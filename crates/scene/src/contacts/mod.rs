@@ -1,6 +1,8 @@
 //! Which bodies touch, what a contact remembers, and its force.
 
 pub(crate) mod ball;
+pub(crate) mod bodies;
+pub(crate) mod cells;
 pub(crate) mod clump_contacts;
 pub(crate) mod contact;
 pub(crate) mod law_column;

@@ -1,14 +1,14 @@
 //! Contacts of two fruit, compiled once for each law.
 
+use crate::contacts::bodies::BodiesFrom;
 use crate::contacts::contact::{Moment, Outcome, Over, Parcel, encounter, parted, spot, too_deep};
-use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::pair_forces::{Batch, Pair};
 use crate::contacts::react::{Clock, Touch, direction_before, surface_motion};
 use crate::contacts::store::{Load, Store, Turning};
 use crate::error::{Error, fruit_name};
 use crate::event::Encounter;
 use crate::interaction::Interaction;
-use crate::vector::{dot, length, plus_scaled, scaled, subtract};
+use crate::vector::{dot, length, plus_scaled, scaled};
 use windfall_contact::effective::effective_radius;
 use windfall_contact::laws::kind::Law;
 use windfall_numerics::prefetch::prefetch;
@@ -199,7 +199,7 @@ impl PairContacts {
                 }
             }
             let [a, b] = pair.map(|body| &bodies.place[body as usize]);
-            let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+            let between = bodies.between(pair);
             let reach = a[3] + b[3];
             let apart = dot(between, between) >= reach * reach || bodies.overlap(pair) <= 0.0;
             if apart {
@@ -291,7 +291,7 @@ fn met(pair: [u32; 2], bodies: &BodiesFrom, clock: Clock) -> (Touch<f64>, Encoun
     let (a, b) = (bodies.place[i][3], bodies.place[j][3]);
     let radius = effective_radius(a, b);
     let displacement = bodies.overlap(pair);
-    let between = subtract(centre(j), centre(i));
+    let between = bodies.between(pair);
     let distance = length(between);
     let normal = scaled(between, 1.0 / distance);
     let (u, w) = (&bodies.motion[i], &bodies.motion[j]);

@@ -1,8 +1,8 @@
 //! Forces of pairs that touch, eight at a time.
 
+use crate::contacts::bodies::BodiesFrom;
 use crate::contacts::contact::LARGEST_OVERLAP;
 use crate::contacts::law_column::Eight;
-use crate::contacts::neighbours::BodiesFrom;
 use crate::contacts::react::{Clock, Normal, Touch, direction_before, surface_motion};
 use crate::contacts::store::{CHUNK, Load, Store, Turning, add_load, loads};
 use crate::interaction::Interaction;
@@ -185,6 +185,7 @@ fn meet<R: EightNumbers>(
     let [u, w] = [zero.columns(rows[2]), zero.columns(rows[3])];
     let [p, q] = [zero.columns(rows[4]), zero.columns(rows[5])];
     let between = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+    let between = bodies.periods.nearest(between);
     let (left, right) = (a[3], b[3]);
     let reach = left + right;
     let distance = dot(between, between).sqrt();

@@ -8,6 +8,7 @@ use crate::contacts::wall_forces::{WallContacts, WallMeeting};
 use crate::error::Error;
 use crate::event::{Encounter, Partner};
 use crate::interaction::Interaction;
+use crate::scene::Scene;
 use crate::shape::facet_tree::FacetTree;
 use crate::shape::placed::Placed;
 use crate::shape::surface::{Closest, Facet, Shape};
@@ -57,15 +58,22 @@ pub(crate) struct WallState {
 }
 
 impl WallState {
-    pub fn new(walls: &[Wall]) -> Self {
+    /// The walls of a scene that was checked, with what continues them beyond its ends.
+    pub fn new(scene: &Scene) -> Self {
+        let walls = &scene.walls;
         let mut facets = Vec::new();
         let (mut single, mut trees) = (Vec::new(), Vec::new());
         for (number, wall) in walls.iter().enumerate() {
             let (number, first) = (number as u32, facets.len() as u32);
-            let own = wall.shape.facets();
+            let own = scene.parts_of(wall).unwrap_or_else(|_| wall.shape.facets());
             match &wall.shape {
-                Shape::Mesh { triangles } => {
-                    trees.push((number, first, FacetTree::new(triangles)));
+                Shape::Mesh { .. } => {
+                    let triangle = |facet: &Facet| match facet {
+                        Facet::Triangle(corners) => Some(*corners),
+                        _ => None,
+                    };
+                    let triangles: Vec<[Vector; 3]> = own.iter().filter_map(triangle).collect();
+                    trees.push((number, first, FacetTree::new(&triangles)));
                 }
                 _ => single.extend(first..first + own.len() as u32),
             }

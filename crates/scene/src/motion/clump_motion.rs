@@ -1,6 +1,6 @@
 //! How clumps of spheres move.
 
-use crate::contacts::neighbours::Bodies;
+use crate::contacts::bodies::Bodies;
 use crate::contacts::store::Load;
 use crate::line::{HalfLine, Line};
 use crate::motion::gather::{PART_OF_CLUMP, Sums};

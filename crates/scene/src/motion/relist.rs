@@ -1,7 +1,8 @@
 //! Rebuilds the neighbour list, carrying contacts over.
 
+use crate::contacts::cells::sort_into_cells;
 use crate::contacts::contact::Parcel;
-use crate::contacts::neighbours::{PairTable, sort_into_cells};
+use crate::contacts::neighbours::PairTable;
 use crate::contacts::pair_contacts::PairContacts;
 use crate::contacts::pair_forces::Pair;
 use crate::contacts::store::{Load, NONE};
@@ -9,6 +10,7 @@ use crate::contacts::wall_contacts::{Lifted, NearPart};
 use crate::contacts::wall_forces::WallContacts;
 use crate::line::HalfLine;
 use crate::motion::simulation::Simulation;
+use crate::vector::{Vector, add, dot};
 use rayon::prelude::*;
 use std::ops::Range;
 use windfall_contact::laws::kind::Law;
@@ -86,6 +88,7 @@ impl Simulation {
     /// A new list of neighbours without contacts; those of the old list, and where they go.
     pub(crate) fn renew(&mut self) -> (Vec<OldBlock>, Vec<Carried>) {
         self.rebuilds += 1;
+        self.wrap();
         self.lift();
         let (cells, order) = sort_into_cells(&mut self.bodies, self.skin);
         self.find_spheres();
@@ -183,6 +186,42 @@ impl Simulation {
         self.ways = vec![[0.0; 2]; self.table.bounds.len()];
         self.find_near();
         self.settle_walls();
+    }
+
+    /// Takes fruit that have left through an end of a periodic axis to the other end. What gravity
+    /// does on the way is brought in.
+    pub(crate) fn wrap(&mut self) {
+        let periods = self.bodies.periods;
+        if !periods.repeat() {
+            return;
+        }
+        let gravity = self.scene.gravity;
+        let mut brought = 0.0;
+        let shifts: Vec<Vector> = self
+            .clumps
+            .iter_mut()
+            .map(|own| {
+                let shift = periods.shift(own.place);
+                own.place = add(own.place, shift);
+                brought -= self.scene.fruit[own.fruit as usize].mass * dot(gravity, shift);
+                shift
+            })
+            .collect();
+        for body in 0..self.bodies.len() {
+            let HalfLine([x, y, z, radius]) = self.bodies.place[body];
+            let shift = match shifts.get(self.bodies.clump[body] as usize) {
+                Some(shift) => *shift,
+                None => {
+                    let shift = periods.shift([x, y, z]);
+                    let mass = self.scene.fruit[self.bodies.fruit[body] as usize].mass;
+                    brought -= mass * dot(gravity, shift);
+                    shift
+                }
+            };
+            let [x, y, z] = add([x, y, z], shift);
+            self.bodies.place[body] = HalfLine([x, y, z, radius]);
+        }
+        self.account.brought += brought;
     }
 
     /// Which bodies the spheres of each clump are now, in the order of its shape.

@@ -1,8 +1,9 @@
 //! A scene from step to step.
 
+use crate::contacts::bodies::Bodies;
 use crate::contacts::clump_contacts::{self, ClumpContacts};
 use crate::contacts::contact::{Moment, Outcome, Over, lasting};
-use crate::contacts::neighbours::{Bodies, PairTable};
+use crate::contacts::neighbours::PairTable;
 use crate::contacts::pair_contacts::PairContacts;
 use crate::contacts::react::{Clock, LOOK};
 use crate::contacts::store::{Load, NONE};
@@ -16,7 +17,6 @@ use crate::line::HalfLine;
 use crate::motion::clump_motion::{Around, ClumpState};
 use crate::motion::gather::{Loads, Sums, Swept};
 use crate::scene::Scene;
-use crate::shape::clump::Clump;
 use crate::vector::{Rotation, Vector};
 use windfall_numerics::real_vector::Row;
 
@@ -98,9 +98,6 @@ pub struct FruitState {
     pub turn: Rotation,
 }
 
-/// Skin of the list of neighbours over the mean radius; 1.
-const SKIN: f64 = 0.16;
-
 /// Steps between looks at sinks: fruit leave at the beginning of a step whose number is a multiple.
 pub const SINK_STEPS: u64 = 32;
 
@@ -120,11 +117,11 @@ impl Simulation {
     pub(crate) fn before_release(mut scene: Scene) -> Result<Self, Error> {
         scene.check()?;
         scene.fruit.sort_by(|a, b| a.time.total_cmp(&b.time));
-        let mean = scene.fruit.iter().map(|fruit| fruit.radius).sum::<f64>();
-        // Surfaces of ovate fruit lie a little outside of the spheres by which they are listed.
-        let clumps = scene.fruit.iter().filter_map(|fruit| fruit.clump.as_ref());
-        let lacks = 2.0 * clumps.map(Clump::lacks).fold(0.0, f64::max);
-        let skin = SKIN * mean / scene.fruit.len().max(1) as f64;
+        let periods = scene.periods();
+        for fruit in &mut scene.fruit {
+            fruit.place = periods.wrapped(fruit.place);
+        }
+        let [skin, lacks] = scene.skin();
         let keys: Vec<(usize, usize)> = scene.interactions.keys().copied().collect();
         let materials = scene.materials.len();
         let number = |place: usize| {
@@ -137,9 +134,12 @@ impl Simulation {
         Ok(Self {
             surfaces: scene.interactions.values().cloned().collect(),
             numbers: (0..materials * materials).map(number).collect(),
-            walls: WallState::new(&scene.walls),
+            walls: WallState::new(&scene),
             scene,
-            bodies: Bodies::default(),
+            bodies: Bodies {
+                periods,
+                ..Bodies::default()
+            },
             clumps: Vec::new(),
             clump_contacts: ClumpContacts::default(),
             table: PairTable::default(),
@@ -155,7 +155,7 @@ impl Simulation {
             moved: f64::INFINITY,
             approach: f64::INFINITY,
             wall_way: 0.0,
-            skin: skin + lacks,
+            skin,
             lacks,
             steps: 0,
             released: 0,
@@ -202,10 +202,12 @@ impl Simulation {
         all
     }
 
-    /// Hands out fruit that are in the scene, in any order.
+    /// Hands out fruit that are in the scene, in any order; along periodic axes those images that
+    /// are between the ends.
     ///
     /// * `wanted`: whether a fruit is, by its number
     pub fn visit_fruit(&self, wanted: impl Fn(u32) -> bool, mut tell: impl FnMut(FruitState)) {
+        let periods = &self.bodies.periods;
         for body in 0..self.bodies.len() {
             let fruit = self.bodies.fruit[body];
             if self.bodies.clump[body] != NONE || !wanted(fruit) {
@@ -214,7 +216,7 @@ impl Simulation {
             let (HalfLine([x, y, z, _]), m) = (self.bodies.place[body], self.bodies.motion[body]);
             tell(FruitState {
                 fruit,
-                place: [x, y, z],
+                place: periods.wrapped([x, y, z]),
                 velocity: [m[0], m[1], m[2]],
                 spin: [m[4], m[5], m[6]],
                 turn: self.bodies.turn[body],
@@ -223,7 +225,7 @@ impl Simulation {
         for own in self.clumps.iter().filter(|own| wanted(own.fruit)) {
             tell(FruitState {
                 fruit: own.fruit,
-                place: own.place,
+                place: periods.wrapped(own.place),
                 velocity: own.velocity,
                 spin: own.spin,
                 turn: own.turn,
@@ -269,7 +271,8 @@ impl Simulation {
             events.extend(over.with(fruit, partner));
         }
         events.sort_by_key(|event| (event.fruit, event.partner, event.number));
-        events
+        let wrapped = |event| self.wrapped(event);
+        events.into_iter().map(wrapped).collect()
     }
 
     /// Advances by one time step.
@@ -395,9 +398,17 @@ impl Simulation {
         for event in outcome.events {
             self.account.normal += event.absorbed_energy;
             self.account.friction += event.friction_energy;
-            self.events.push(event);
+            self.events.push(self.wrapped(event));
         }
         Ok(())
+    }
+
+    /// A load that is told where it is between the ends of the scene.
+    fn wrapped(&self, event: Event) -> Event {
+        Event {
+            place: self.bodies.periods.wrapped(event.place),
+            ..event
+        }
     }
 
     /// Clumps one step on, and their spheres with them.

@@ -5,8 +5,9 @@
 //! no later pair asks where they were. Blocks go through a step in waves, the bodies of one
 //! wave together with the pairs of the next, while what they need is still near the processor.
 
+use crate::contacts::bodies::BodiesFrom;
 use crate::contacts::contact::{Moment, Outcome};
-use crate::contacts::neighbours::{BodiesFrom, PairTable};
+use crate::contacts::neighbours::PairTable;
 use crate::contacts::pair_contacts::{PairContacts, Part};
 use crate::contacts::react::Clock;
 use crate::contacts::store::Load;
@@ -163,6 +164,7 @@ impl Simulation {
             fruit: &self.bodies.fruit[still..],
             clump: &self.bodies.clump[still..],
             offset: &self.bodies.offset[still..],
+            periods: &self.bodies.periods,
         };
         let mut contacts = Cut::of(&mut self.contacts);
         let mut outs = Cut::of(outs);

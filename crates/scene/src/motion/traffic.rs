@@ -7,7 +7,7 @@ use crate::line::{HalfLine, Line};
 use crate::motion::clump_motion::ClumpState;
 use crate::motion::gather::PART_OF_CLUMP;
 use crate::motion::simulation::{FruitState, Leaving, Simulation};
-use crate::scene::{Fruit, Sink};
+use crate::scene::Fruit;
 use crate::vector::{Vector, dot, length, plus_scaled, subtract};
 
 /// Overlap over the radius that fruit may have at the beginning; 1.
@@ -144,8 +144,7 @@ impl Simulation {
         let places = &self.bodies.place;
         for (&first, &second) in self.table.first.iter().zip(&self.table.second) {
             let (a, b) = (places[first as usize], places[second as usize]);
-            let between = length(subtract([a[0], a[1], a[2]], [b[0], b[1], b[2]]));
-            let overlap = a[3] + b[3] - between;
+            let overlap = self.bodies.overlap([first, second]);
             if overlap > ROOM * a[3].min(b[3]) {
                 return Err(Error::Occupied {
                     fruit: self.bodies.fruit[first as usize],
@@ -169,6 +168,7 @@ impl Simulation {
                 let share = (number * SPREAD_OUT[axis]).fract();
                 own.place[axis] = low[axis] + (high[axis] - low[axis]) * share;
             }
+            own.place = self.bodies.periods.wrapped(own.place);
             if !self.in_the_way(&own) {
                 return Some(own.place);
             }
@@ -180,7 +180,8 @@ impl Simulation {
     /// beginning are checked together.
     fn in_the_way(&self, fruit: &Fruit) -> bool {
         let overlaps = |&HalfLine([x, y, z, radius]): &HalfLine| {
-            length(subtract([x, y, z], fruit.place)) < radius + fruit.radius
+            let between = subtract([x, y, z], fruit.place);
+            length(self.bodies.periods.nearest(between)) < radius + fruit.radius
         };
         self.steps > 0
             && (self.bodies.place.iter().any(overlaps)
@@ -191,12 +192,10 @@ impl Simulation {
     pub(crate) fn sink(&mut self) {
         let time = self.time();
         let gravity = self.scene.gravity;
-        let sink_of = |[x, y, z]: Vector| {
-            self.scene.sinks.iter().position(|sink: &Sink| {
-                let inside =
-                    |axis: usize, at: f64| (sink.low[axis]..=sink.high[axis]).contains(&at);
-                inside(0, x) && inside(1, y) && inside(2, z)
-            })
+        let sink_of = |place: Vector| {
+            let periods = &self.bodies.periods;
+            let mut sinks = self.scene.sinks.iter();
+            sinks.position(|sink| sink.holds(place, periods))
         };
         let mut keep = Vec::with_capacity(self.bodies.len());
         let mut gone = Vec::new();

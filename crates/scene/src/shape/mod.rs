@@ -1,5 +1,6 @@
 //! Shapes of fruit and walls.
 
+pub mod beyond;
 pub mod clump;
 pub(crate) mod facet_tree;
 pub mod mesh;

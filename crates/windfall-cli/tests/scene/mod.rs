@@ -4,6 +4,7 @@
 #[cfg(unix)]
 mod engines;
 mod moves;
+mod periodic;
 mod ranks;
 mod ranks_resume;
 mod run;

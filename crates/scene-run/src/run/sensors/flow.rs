@@ -4,8 +4,9 @@ use crate::file::sensors::{SensorKind, SensorPlan};
 use crate::run::sensors::outcome::FlowOutcome;
 use crate::run::sensors::trace::Trace;
 use windfall_scene::binary;
+use windfall_scene::periods::Periods;
 use windfall_scene::shape::surface::Plate;
-use windfall_scene::vector::{Vector, cross, dot, plus_scaled, subtract, unit};
+use windfall_scene::vector::{Vector, add, cross, dot, plus_scaled, subtract, unit};
 
 /// Bars of a figure at least.
 const LEAST_BARS: f64 = 20.0;
@@ -47,6 +48,16 @@ impl Way {
         plus_scaled(from, subtract(to, from), share)
     }
 
+    /// Its image whose middle is nearest to a place.
+    pub fn image(&self, periods: &Periods, place: Vector) -> Self {
+        let middle = self.place(0.5);
+        let shift = subtract(periods.image(middle, place), middle);
+        Self {
+            places: self.places.map(|own| add(own, shift)),
+            ..*self
+        }
+    }
+
     /// The time after a share of the way; s.
     pub fn time(&self, share: f64) -> f64 {
         self.times[0] + share * (self.times[1] - self.times[0])
@@ -61,6 +72,9 @@ pub(super) struct Flow {
     normal: Vector,
     /// Whether only what passes within counts.
     plate: Option<Plate>,
+    /// A point in the middle of it; m.
+    middle: Vector,
+    periods: Periods,
     interval: f64,
     /// What was seen.
     pub state: FlowState,
@@ -101,7 +115,7 @@ impl Flow {
     /// The plane or plate of a sensor; `None` where it is something else.
     ///
     /// * `end`: of the scene; s
-    pub fn new(sensor: usize, plan: &SensorPlan, end: f64) -> Option<Self> {
+    pub fn new(sensor: usize, plan: &SensorPlan, end: f64, periods: Periods) -> Option<Self> {
         let (point, normal, plate) = match plan.kind {
             SensorKind::Plane { point, normal } => (point, normal, None),
             SensorKind::Plate(own) => {
@@ -116,6 +130,11 @@ impl Flow {
             point,
             normal,
             plate,
+            middle: plate.map_or(point, |own| {
+                let [a, b] = own.edges;
+                plus_scaled(point, add(a, b), 0.5)
+            }),
+            periods,
             interval: plan.interval,
             state: FlowState {
                 there: trace.clone(),
@@ -127,6 +146,7 @@ impl Flow {
 
     /// The pass of a fruit on its way, if there is one; it is taken for straight and even.
     pub fn pass(&self, way: &Way) -> Option<Pass> {
+        let way = &way.image(&self.periods, self.middle);
         let heights = way
             .places
             .map(|own| dot(subtract(own, self.point), self.normal));
@@ -145,7 +165,7 @@ impl Flow {
             time: way.time(share),
             fruit: way.fruit,
             forward: sides[1],
-            place,
+            place: self.periods.wrapped(place),
             speed: (heights[1] - heights[0]) / (way.times[1] - way.times[0]),
             mass: way.mass,
         })
@@ -221,7 +241,7 @@ mod tests {
             only: None,
             interval: 1.0,
         };
-        Flow::new(0, &plan, 10.0).unwrap()
+        Flow::new(0, &plan, 10.0, Periods::default()).unwrap()
     }
 
     fn way(from: Vector, to: Vector) -> Way {

@@ -6,8 +6,9 @@ use crate::run::sensors::outcome::{ResidenceOutcome, SpaceOutcome};
 use crate::run::sensors::trace::Trace;
 use windfall_scene::binary;
 use windfall_scene::motion::simulation::FruitState;
+use windfall_scene::periods::Periods;
 use windfall_scene::scene::Fruit;
-use windfall_scene::vector::{Vector, turned};
+use windfall_scene::vector::{Vector, add, scaled, subtract, turned};
 
 /// A box.
 pub(super) struct Space {
@@ -15,6 +16,7 @@ pub(super) struct Space {
     pub sensor: usize,
     low: Vector,
     high: Vector,
+    periods: Periods,
     /// Steps between rows of the table.
     pub every: u64,
     /// What is in it at the end.
@@ -71,6 +73,7 @@ impl Space {
         plan: &SensorPlan,
         fruit: usize,
         (every, interval, end): (u64, f64, f64),
+        periods: Periods,
     ) -> Option<Self> {
         let SensorKind::Space { low, high } = plan.kind else {
             return None;
@@ -80,6 +83,7 @@ impl Space {
             sensor,
             low,
             high,
+            periods,
             every,
             last: Content::default(),
             state: SpaceState {
@@ -92,7 +96,12 @@ impl Space {
         })
     }
 
+    fn middle(&self) -> Vector {
+        scaled(add(self.low, self.high), 0.5)
+    }
+
     fn holds(&self, place: Vector) -> bool {
+        let place = self.periods.image(place, self.middle());
         (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&place[axis]))
     }
 
@@ -109,7 +118,7 @@ impl Space {
         if from && to {
             return;
         }
-        let Some([enters, leaves]) = self.shares(way) else {
+        let Some([enters, leaves]) = self.shares(&self.beside(way, [from, to])) else {
             return;
         };
         if !from {
@@ -117,6 +126,20 @@ impl Space {
         }
         if !to {
             self.leave(way.fruit, way.time(leaves));
+        }
+    }
+
+    /// The image of a way that is in the box with the ends that are.
+    fn beside(&self, way: &Way, [from, to]: [bool; 2]) -> Way {
+        let mark = match (from, to) {
+            (true, _) => way.places[0],
+            (false, true) => way.places[1],
+            (false, false) => way.place(0.5),
+        };
+        let shift = subtract(self.periods.image(mark, self.middle()), mark);
+        Way {
+            places: way.places.map(|own| add(own, shift)),
+            ..*way
         }
     }
 
@@ -250,7 +273,7 @@ mod tests {
             only: None,
             interval: 0.1,
         };
-        Space::new(0, &plan, 3, (10, 0.1, 5.0)).unwrap()
+        Space::new(0, &plan, 3, (10, 0.1, 5.0), Periods::default()).unwrap()
     }
 
     fn way(fruit: u32, from: Vector, to: Vector, at: f64) -> Way {

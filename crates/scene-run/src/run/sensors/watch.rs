@@ -70,10 +70,12 @@ impl Sensors {
             let every = (own.interval / step).round().max(1.0) as u64;
             (every, every as f64 * step, plan.end)
         };
-        let flows = numbered().filter_map(|(place, own)| Flow::new(place, own, plan.end));
+        let periods = scene.periods();
+        let flows = numbered().filter_map(|(place, own)| Flow::new(place, own, plan.end, periods));
         let fruit = scene.fruit.len();
         let spaces = numbered();
-        let spaces = spaces.filter_map(|(place, own)| Space::new(place, own, fruit, timed(own)));
+        let spaces =
+            spaces.filter_map(|(place, own)| Space::new(place, own, fruit, timed(own), periods));
         let probes = numbered().filter_map(|(place, own)| {
             if !matches!(own.kind, SensorKind::Probe { .. }) {
                 return None;
@@ -215,6 +217,7 @@ impl Sensors {
     /// Looks at the ways of all fruit since the last look.
     fn look(&mut self, simulation: &Simulation, fruit: &[FruitState]) -> Result<(), Error> {
         let now = simulation.time();
+        let periods = simulation.scene.periods();
         let mut passes: Vec<(usize, Pass)> = Vec::new();
         for state in fruit {
             let number = state.fruit as usize;
@@ -229,7 +232,7 @@ impl Sensors {
             }
             let way = Way {
                 fruit: state.fruit,
-                places: [from, state.place],
+                places: [from, periods.image(state.place, from)],
                 times: [self.looked, now],
                 mass: simulation.scene.fruit[number].mass,
             };

@@ -146,6 +146,7 @@ export interface FlowOutcome {
 }
 export interface FramesAbout {
   title: string; end: number; interval: number; fruit: number; walls: WallAbout[]; bounds: Bounds;
+  periods: [number, number, number];
 }
 export interface FruitHistory { fruit: number; contacts: number; told: ContactView[]; }
 export interface FruitOutcome { specimen: string; impacts: number; parameters: number[]; }

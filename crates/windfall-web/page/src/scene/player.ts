@@ -249,7 +249,8 @@ export class Player {
       // Both frames are in the order of numbers.
       while (next && there < next.count && next.words[there * WORDS]! < fruit) there++;
       const same = next && there < next.count && next.words[there * WORDS] === fruit;
-      between(before.numbers, at, same ? next.numbers : null, there * WORDS, part);
+      const periods = this.view.about.periods;
+      between(before.numbers, at, same ? next.numbers : null, there * WORDS, part, periods);
       const radius = this.view.radii[fruit - 1] ?? 0;
       MATRIX.compose(SPOT, ROTATION, SIZE.setScalar(radius));
       this.#fruit.setMatrixAt(k, MATRIX);
@@ -387,12 +388,24 @@ function outline(view: SceneView): Vector3[] {
   return points;
 }
 
-/** Place and orientation between two records of a fruit, into SPOT and ROTATION. */
-function between(from: Float32Array, a: number, to: Float32Array | null, b: number, part: number): void {
+/** Place and orientation between two records of a fruit, into SPOT and ROTATION. Over an end of a
+ *  scene that repeats a fruit goes on, not back through the scene. */
+function between(
+  from: Float32Array,
+  a: number,
+  to: Float32Array | null,
+  b: number,
+  part: number,
+  periods: number[],
+): void {
   SPOT.fromArray(from, a + PLACE);
   turnOf(from, a + TURN, ROTATION);
   if (!to) return;
   SIZE.fromArray(to, b + PLACE);
+  for (const [axis, period] of periods.entries()) {
+    const way = SIZE.getComponent(axis) - SPOT.getComponent(axis);
+    if (period > 0) SIZE.setComponent(axis, SIZE.getComponent(axis) - period * Math.round(way / period));
+  }
   SPOT.lerp(SIZE, part);
   ROTATION.slerp(turnOf(to, b + TURN, OTHER), part);
 }
