@@ -364,7 +364,8 @@ fn fault(kind: &Kind, text: &str, (table, key): (&str, &str), value: &str) -> Op
         Err(told) => {
             // The fault may be a key of a table within the line.
             let named = told.contains(key) || value.contains("nosuch") && told.contains("nosuch");
-            (!told.contains(&place) || !named).then(|| format!("{place} {told}"))
+            let plain = !told.contains("struct ");
+            (!told.contains(&place) || !named || !plain).then(|| format!("{place} {told}"))
         }
     }
 }
@@ -381,7 +382,9 @@ fn check(kind: &Kind, text: &str, table: &str, depth: usize, faults: &mut Vec<St
             _ => format!("{table}.{key}"),
         };
         if depth < 3 && !kind.known(text, &inner).is_empty() {
-            count += check(kind, text, &inner, depth + 1, faults);
+            count += 1 + check(kind, text, &inner, depth + 1, faults);
+            let found = fault(kind, text, (table, &key), "true");
+            faults.extend(found.map(|own| format!("{}: {inner} = true: {own}", kind.name)));
             continue;
         }
         for value in WRONG.into_iter().chain([NEGATIVE]) {

@@ -441,6 +441,11 @@ fn syntax_message(source: &TomlSource, span: &Range<usize>, message: &str) -> St
         for (own, plain) in TYPES {
             message = message.replace(own, plain);
         }
+        // The name that a program has for a table tells nobody anything.
+        if let Some((before, name)) = message.split_once("expected struct ") {
+            let after = name.trim_start_matches(|c: char| c.is_alphanumeric());
+            message = format!("{before}expected a table, {{ key = value }}{after}");
+        }
     }
     format!("{message} in: {}", line.trim())
 }
