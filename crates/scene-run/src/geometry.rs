@@ -76,7 +76,7 @@ impl Bounds {
         length(subtract(self.high, self.low))
     }
 
-    fn corners(&self) -> Vec<Vector> {
+    pub fn corners(&self) -> Vec<Vector> {
         let corner = |number: usize| {
             std::array::from_fn(|k| match number >> k & 1 {
                 0 => self.low[k],

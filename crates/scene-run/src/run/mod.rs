@@ -2,6 +2,7 @@
 
 pub mod advance;
 pub mod checkpoint;
+mod fallen;
 pub mod frame_format;
 pub(crate) mod frames;
 pub mod growing;

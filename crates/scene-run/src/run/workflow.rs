@@ -6,6 +6,7 @@ use crate::file::read::{ScenePlan, read_scene};
 use crate::file::step::checked_step;
 use crate::file_error::{make_directory, write_json};
 use crate::run::advance::{Mover, Own, SceneRun};
+use crate::run::fallen::finding_of_fallen;
 use crate::run::frame_format::FRAMES_FILE;
 use crate::run::frames::remove_frames;
 use crate::run::histogram::{HistogramOutcome, figure_of_histograms, histogram};
@@ -226,6 +227,7 @@ fn findings_of(
         &run.tally,
         run.simulation.waiting(),
     ));
+    findings.extend(finding_of_fallen(&run.simulation));
     findings.extend(run.sensors.findings(plan));
     if let Some(blows) = &run.blows {
         findings.extend(finding_of_blows(blows));

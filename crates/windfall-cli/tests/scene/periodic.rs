@@ -234,3 +234,28 @@ fn frames_tell_the_period_and_show_walls_once() {
     let walls = std::fs::read_to_string(directory.join("vtk/walls.vtp")).unwrap();
     assert!(walls.contains("NumberOfPoints=\"4\""), "{walls}");
 }
+
+#[test]
+fn a_belt_that_is_too_short_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |changes: &[(&str, &str)]| {
+        let _ = std::fs::remove_dir_all(folder.path().join("belt.run"));
+        written(folder.path(), changes);
+        let findings = run(folder.path())["findings"].clone();
+        let mut all = findings.as_array().unwrap().iter();
+        all.find(|own| own["code"] == "fell-out").cloned()
+    };
+    assert_eq!(told(&[]), None);
+    // It drives off the end at once, and falls from there.
+    let found = told(&[("x = [0, 0.6]", "x = [0, 3]")]).unwrap();
+    let message = found["message"].as_str().unwrap();
+    assert!(
+        message.starts_with("1 fruit fell past every wall and sink"),
+        "{message}"
+    );
+    // What has been let fall for too short a time is still above.
+    assert_eq!(
+        told(&[("x = [0, 0.6]", "x = [0, 3]"), ("2 s", "0.1 s")]),
+        None
+    );
+}
