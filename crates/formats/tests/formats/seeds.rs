@@ -67,48 +67,6 @@ pub fn npz_parts() -> Parts {
     ]
 }
 
-/// A zip archive of one deflated member that declares a size.
-pub fn packed(name: &str, packed: &[u8], size: u32) -> Vec<u8> {
-    let lengths = le(&[
-        &[0; 4],
-        &(packed.len() as u32).to_le_bytes(),
-        &size.to_le_bytes(),
-    ]);
-    let name_length = (name.len() as u16).to_le_bytes();
-    let method = [0, 0, 0, 0, 8, 0, 0, 0, 0, 0];
-    let local = le(&[
-        b"PK\x03\x04",
-        &method,
-        &lengths,
-        &name_length,
-        &[0; 2],
-        name.as_bytes(),
-        packed,
-    ]);
-    let rest = le(&[&name_length, &[0; 16]]);
-    let central = le(&[
-        b"PK\x01\x02",
-        &[0; 2],
-        &method,
-        &lengths,
-        &rest,
-        name.as_bytes(),
-    ]);
-    let place = le(&[
-        &(central.len() as u32).to_le_bytes(),
-        &(local.len() as u32).to_le_bytes(),
-    ]);
-    le(&[
-        &local,
-        &central,
-        b"PK\x05\x06",
-        &[0; 4],
-        &[1, 0, 1, 0],
-        &place,
-        &[0; 2],
-    ])
-}
-
 /// A sheet with shared and inline texts, a date, an error, a formula and blank cells.
 pub fn xlsx_parts() -> Parts {
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
@@ -217,7 +175,7 @@ fn lvm() -> Vec<u8> {
         .to_vec()
 }
 
-fn le(parts: &[&[u8]]) -> Vec<u8> {
+pub fn le(parts: &[&[u8]]) -> Vec<u8> {
     parts.concat()
 }
 
