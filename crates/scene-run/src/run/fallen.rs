@@ -7,8 +7,8 @@ use windfall_scene::motion::simulation::Simulation;
 use windfall_scene::scene::Sink;
 use windfall_scene::vector::{Vector, dot, length, scaled};
 
-/// Fruit that are below all walls and sinks at the end, and fall on: what was to catch them has
-/// a gap, or is missing.
+/// Fruit that are below all walls and sinks at the end and still fall: what should have caught
+/// them has a gap, or is missing.
 pub fn finding_of_fallen(simulation: &Simulation) -> Option<FindingOutcome> {
     let scene = &simulation.scene;
     let size = length(scene.gravity);
@@ -41,8 +41,8 @@ pub fn finding_of_fallen(simulation: &Simulation) -> Option<FindingOutcome> {
         FindingOutcome::new(
             "fell-out",
             format!(
-                "{fallen} fruit fell past every wall and sink, by up to {} m at the end; look for a \
-                 gap, or give a floor or a sink that takes them",
+                "{fallen} fruit fell past every wall and sink, by up to {} m at the end: look for a \
+                 gap between walls, or add a floor or a sink",
                 short(farthest)
             ),
         )

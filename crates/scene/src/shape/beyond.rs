@@ -14,6 +14,9 @@ use crate::vector::{Vector, add, dot, length, plus_scaled, subtract};
 /// count; 1.
 const FLAT: f64 = 1e-9;
 
+/// Copies of a part at most: each is looked at where fruit are near.
+const MOST_IMAGES: f64 = 100.0;
+
 /// Why a wall cannot be continued along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unrepeatable {
@@ -93,13 +96,19 @@ impl Along {
         }
         if !self.travel.iter().all(|own| own.is_finite()) {
             return refused(
-                "it moves along this axis without end: give a surface that runs a `belt`, or let it \
-                 move for a time only ([[moves]])",
+                "it moves along this axis without end: use `belt` for a surface that runs, or limit \
+                 the time of its motion ([[moves]])",
             );
         }
         if let Some(longer) = self.stretched(&own) {
             facets[number] = longer;
             return Ok(());
+        }
+        if images[1] - images[0] > MOST_IMAGES {
+            return refused(
+                "it is longer than a hundred periods, or moves so far: draw a piece of it that is \
+                 about as long as the period",
+            );
         }
         for image in images[0] as i64..=images[1] as i64 {
             if image != 0 {

@@ -166,6 +166,12 @@ fn rejects_what_cannot_repeat() {
             22,
             "tilt `gravity` instead",
         ),
+        (
+            "edges = [[0.6, 0, 0]",
+            "edges = [[1e6, 1, 0]",
+            22,
+            "longer than a hundred periods",
+        ),
         (drop, lattice, 21, "it would overlap itself"),
         (
             "high = [0.7,",
