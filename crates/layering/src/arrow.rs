@@ -18,6 +18,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("source", ""),
     ("formats", "source"),
     ("files", "statistics distribution formats source numerics"),
+    ("columnar", "files"),
     ("draw", "files"),
     ("cards", "files contact numerics"),
     ("tables", "design draw files statistics mixed distribution"),
@@ -47,7 +48,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "scene-run",
-        "campaign cards draw files scene identify contact statistics distribution numerics",
+        "columnar campaign cards draw files scene identify contact statistics distribution numerics",
     ),
     (
         "plan",
@@ -57,7 +58,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("engines", "lammps scene-run files scene contact"),
     (
         "report",
-        "drop measure campaign cards draw files identify contact signal statistics distribution",
+        "columnar drop measure campaign cards draw files identify contact signal statistics distribution",
     ),
     (
         "workspace",
@@ -73,7 +74,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "cli",
-        "web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
+        "columnar web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
     ),
     ("python", "windfall"),
     ("test-data", ""),
