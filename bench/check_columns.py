@@ -1,6 +1,7 @@
 """Parquet and Arrow files of windfall read by pyarrow, polars and DuckDB; called by check-columns."""
 
 import csv
+import datetime
 import subprocess
 import sys
 import tempfile
@@ -120,3 +121,56 @@ with tempfile.TemporaryDirectory() as name:
             found = compare(table, folder, units) if before is None else tuple((folder / f"{table}.{own}").read_bytes() for own in ["parquet", "arrow"])
             assert before in (None, found), f"{table}: the same table is another file"
             before = found
+
+
+def foreign(folder):
+    """Tables that other programs write, read by `windfall summary` as their CSV is."""
+    days = [datetime.date(2026, 11, 1 + n % 28) for n in range(60)]
+    table = polars.DataFrame(
+        {
+            "variety": ["Gala", "Fuji", None] * 20,
+            "firmness_N": [70.0 + n / 7 if n % 11 else None for n in range(60)],
+            "drops": [n % 4 - 1 for n in range(60)],
+            "ripe": [n % 3 == 0 for n in range(60)],
+            "day": days,
+            "at": [datetime.datetime(2026, 11, 1, 8, n, 30) for n in range(60)],
+        },
+        schema_overrides={"drops": polars.Int16, "variety": polars.Categorical},
+    )
+    table.write_csv(folder / "table.csv", datetime_format="%Y-%m-%dT%H:%M:%S")
+    arrow = table.to_arrow()
+    for compression in ["zstd", "snappy", "lz4", "gzip", "uncompressed"]:
+        table.write_parquet(folder / f"polars-{compression}.parquet", compression=compression)
+    table.write_ipc(folder / "polars.arrow")
+    table.to_pandas().to_parquet(folder / "pandas.parquet")
+    pyarrow.parquet.write_table(arrow, folder / "pyarrow.parquet", row_group_size=7, version="1.0")
+    pyarrow.parquet.write_table(arrow, folder / "pages.parquet", data_page_version="2.0", use_dictionary=False)
+    duckdb.sql(f"copy (select * from arrow) to '{folder}/duckdb.parquet' (format parquet)")
+    (folder / "parts").mkdir()
+    for part in range(3):
+        table[20 * part : 20 * (part + 1)].write_parquet(folder / "parts" / f"{part}.parquet")
+
+    def summary(name, *by):
+        words = ["summary", name, "--value", "firmness_N", "--by", *by, "--format", "json"]
+        found = subprocess.run([program, *words], cwd=folder, capture_output=True, text=True)
+        assert found.returncode == 0, f"{name}: {found.stderr}"
+        return found.stdout.replace(name, "")
+
+    groups = ["variety", "drops", "ripe", "day", "at"]
+    expected = {by: summary("table.csv", by) for by in groups}
+    names = sorted(own.name for own in folder.iterdir() if own.suffix in (".parquet", ".arrow") or own.name == "parts")
+    for name in names:
+        # pandas has no days, only instants.
+        for by in [own for own in groups if (own, name) != ("day", "pandas.parquet")]:
+            assert summary(name, by) == expected[by], f"{name} by {by}"
+    print(f"read as their CSV is: {', '.join(names)}")
+    nested = polars.DataFrame({"firmness_N": [1.0, 2.0], "spots": [[1, 2], [3]]})
+    nested.write_parquet(folder / "nested.parquet")
+    words = [program, "summary", "nested.parquet", "--value", "firmness_N"]
+    refused = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    assert refused.returncode != 0 and "the column spots is of type" in refused.stderr, refused
+    print(f"refused: {refused.stderr.strip()}")
+
+
+with tempfile.TemporaryDirectory() as name:
+    foreign(Path(name))

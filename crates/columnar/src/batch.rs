@@ -1,21 +1,21 @@
 //! Rows of cells as columns in memory.
 
+use crate::error::Error;
+use crate::schema::{Cell, Column, Kind, Schema};
 use arrow_array::builder::{
     BooleanBuilder, Float32Builder, Float64Builder, Int64Builder, StringBuilder,
 };
 use arrow_array::{ArrayRef, RecordBatch};
-use arrow_schema::{ArrowError, DataType, Field, Schema as ArrowSchema, SchemaRef};
+use arrow_schema::{DataType, Field, Schema as ArrowSchema, SchemaRef};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use windfall_files::provenance::VERSION;
-use windfall_files::sheet::{Cell, Column, Kind, Schema};
 
 /// The schema as Arrow has it: with the unit and the meaning of each column, and with the name
 /// and version of the table, as metadata.
-pub fn arrow_schema(schema: &Schema) -> SchemaRef {
+pub(crate) fn arrow_schema(schema: &Schema) -> SchemaRef {
     let fields: Vec<Field> = schema.columns.iter().map(field).collect();
     let own = [
-        ("windfall", VERSION.to_owned()),
+        ("windfall", env!("CARGO_PKG_VERSION").to_owned()),
         ("table", schema.table.to_owned()),
         ("schema", schema.version.to_string()),
     ];
@@ -94,7 +94,7 @@ impl Cells {
 }
 
 /// Rows that become a batch of columns.
-pub struct Rows {
+pub(crate) struct Rows {
     schema: SchemaRef,
     columns: Vec<Cells>,
     rows: usize,
@@ -102,7 +102,7 @@ pub struct Rows {
 
 impl Rows {
     /// No rows yet.
-    pub fn new(schema: &Schema) -> Self {
+    pub(crate) fn new(schema: &Schema) -> Self {
         Self {
             schema: arrow_schema(schema),
             columns: schema.columns.iter().map(|c| Cells::new(c.kind)).collect(),
@@ -111,26 +111,21 @@ impl Rows {
     }
 
     /// The schema as Arrow has it.
-    pub fn schema(&self) -> &SchemaRef {
+    pub(crate) fn schema(&self) -> &SchemaRef {
         &self.schema
     }
 
     /// Rows so far.
-    pub fn len(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.rows
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.rows == 0
     }
 
     /// Adds a row.
     ///
     /// # Errors
     /// It has not as many cells as there are columns, or a cell of another kind.
-    pub fn push(&mut self, row: &[Cell]) -> Result<(), ArrowError> {
-        let odd = |told| Err(ArrowError::SchemaError(told));
+    pub(crate) fn push(&mut self, row: &[Cell]) -> Result<(), Error> {
+        let odd = |told| Err(Error::Row(told));
         if row.len() != self.columns.len() {
             let (cells, columns) = (row.len(), self.columns.len());
             return odd(format!("{cells} cells in {columns} columns"));
@@ -149,9 +144,9 @@ impl Rows {
     ///
     /// # Errors
     /// None in practice: columns are equally long.
-    pub fn take(&mut self) -> Result<RecordBatch, ArrowError> {
+    pub(crate) fn take(&mut self) -> Result<RecordBatch, Error> {
         self.rows = 0;
         let columns = self.columns.iter_mut().map(Cells::finish).collect();
-        RecordBatch::try_new(self.schema.clone(), columns)
+        Ok(RecordBatch::try_new(self.schema.clone(), columns)?)
     }
 }

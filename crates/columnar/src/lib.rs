@@ -1,7 +1,7 @@
-//! Tables as Parquet and Arrow files, for programs that read columns.
+//! Tables as files of columns, Parquet and Arrow, of windfall and of others.
 
-pub mod batch;
-pub mod container;
+mod batch;
 pub mod error;
-pub mod from_csv;
+pub mod read;
+pub mod schema;
 pub mod write;

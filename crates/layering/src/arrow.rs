@@ -16,9 +16,12 @@ const ARROWS: &[(&str, &str)] = &[
     ("drop-rig", "distribution identify signal contact numerics"),
     ("scene", "contact numerics"),
     ("source", ""),
+    ("columnar", ""),
     ("formats", "source"),
-    ("files", "statistics distribution formats source numerics"),
-    ("columnar", "files"),
+    (
+        "files",
+        "columnar statistics distribution formats source numerics",
+    ),
     ("draw", "files"),
     ("cards", "files contact numerics"),
     ("tables", "design draw files statistics mixed distribution"),
@@ -48,7 +51,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "scene-run",
-        "columnar campaign cards draw files scene identify contact statistics distribution numerics",
+        "campaign cards draw files scene identify contact statistics distribution numerics",
     ),
     (
         "plan",
@@ -58,7 +61,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("engines", "lammps scene-run files scene contact"),
     (
         "report",
-        "columnar drop measure campaign cards draw files identify contact signal statistics distribution",
+        "drop measure campaign cards draw files identify contact signal statistics distribution",
     ),
     (
         "workspace",
@@ -74,7 +77,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "cli",
-        "columnar web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
+        "web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
     ),
     ("python", "windfall"),
     ("test-data", ""),

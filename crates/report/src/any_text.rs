@@ -4,10 +4,10 @@ use std::path::Path;
 use windfall_campaign::impacts::table::{ImpactTable, csv_of_campaign};
 use windfall_campaign::impacts::text::text_of_campaign;
 use windfall_campaign::settings::kind::CampaignKind;
-use windfall_columnar::container::Container;
-use windfall_columnar::from_csv::FoundTable;
-use windfall_columnar::write::write_rows;
 use windfall_files::error::Error;
+use windfall_files::sheet::form::Form;
+use windfall_files::sheet::found::FoundTable;
+use windfall_files::sheet::write::write_rows;
 use windfall_measure::any_outcome::AnyOutcome;
 use windfall_measure::taps::text::csv_of_acoustic;
 use windfall_measure::text::{csv_of_measured, text_of_measured};
@@ -39,15 +39,15 @@ pub fn csv_of_any(outcome: &AnyOutcome) -> Result<String, Error> {
 ///
 /// # Errors
 /// The file may not be replaced, or cannot be written.
-pub fn write_any(path: &Path, container: Container, outcome: &AnyOutcome) -> Result<(), Error> {
+pub fn write_any(path: &Path, form: Form, outcome: &AnyOutcome) -> Result<(), Error> {
     match outcome {
         AnyOutcome::Impacts(own) => {
             let table = ImpactTable::new(own);
-            write_rows(path, container, &table.schema, table.rows())
+            write_rows(path, form, &table.schema, table.rows())
         }
         AnyOutcome::Measured(_) => {
             let table = FoundTable::read("fit", &csv_of_any(outcome)?)?;
-            write_rows(path, container, &table.schema, table.rows())
+            write_rows(path, form, &table.schema, table.rows())
         }
     }
 }

@@ -6,6 +6,7 @@ use itertools::Itertools;
 use std::iter::once;
 use windfall_files::error::Error;
 use windfall_files::found::EstimateOutcome;
+use windfall_files::sheet::write::csv_of_table;
 use windfall_files::sheet::{Cell, Column, Kind, Schema};
 use windfall_files::table::data::LEFT_OUT_COLUMN;
 
@@ -88,7 +89,7 @@ impl<'a> ImpactTable<'a> {
 /// None in practice: every cell can be written.
 pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
     let table = ImpactTable::new(outcome);
-    table.schema.csv(table.rows())
+    csv_of_table(&table.schema, table.rows())
 }
 
 fn columns(parameters: &[&str]) -> Vec<Column> {

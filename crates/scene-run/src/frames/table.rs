@@ -6,13 +6,13 @@ use crate::run::columns::SceneTable;
 use crate::run::frame_format::{Frame, FruitFrame};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use windfall_columnar::container::Container;
-use windfall_columnar::from_csv::each_row;
-use windfall_columnar::write::{TableWriter, write_table};
 use windfall_files::error::Error;
 use windfall_files::inputs::protect;
 use windfall_files::progress::Progress;
 use windfall_files::sheet::Cell;
+use windfall_files::sheet::each_row::each_row;
+use windfall_files::sheet::form::Form;
+use windfall_files::sheet::write::{TableWriter, write_table};
 
 /// A table that was written.
 #[derive(Clone, Debug, Serialize)]
@@ -36,12 +36,12 @@ pub fn table_of_scene(
     out: &Path,
     progress: Progress,
 ) -> Result<TableOutcome, Error> {
-    let container = Container::of_path("--out", out)?;
+    let form = Form::of_path("--out", out)?;
     let (schema, mut rows) = (table.schema(), 0);
     // What is read is known before it is decided what may be written.
     if table == SceneTable::Frames {
         let mut frames = open_frames(path)?;
-        write_table(out, container, &schema, |writer| {
+        write_table(out, form, &schema, |writer| {
             fill_frames(&mut frames, writer, &mut rows, progress)
         })?;
     } else {
@@ -51,7 +51,7 @@ pub fn table_of_scene(
             return Err(Error::FileAbsent { path: text, advice });
         }
         protect(&text);
-        write_table(out, container, &schema, |writer| {
+        write_table(out, form, &schema, |writer| {
             each_row(&text, &schema, |row| {
                 rows += 1;
                 writer.push(row)

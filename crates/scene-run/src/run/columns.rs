@@ -1,7 +1,7 @@
 //! Columns of the tables of a scene.
 
 use windfall_files::sheet::Kind::{Count, Flag, Number, Single, Text};
-use windfall_files::sheet::{Column, Kind, Schema};
+use windfall_files::sheet::{Kind, Schema, titled};
 
 /// Raised when a column of one of the tables goes or changes its meaning.
 const VERSION: u32 = 1;
@@ -144,7 +144,7 @@ impl SceneTable {
             Self::Fruit => ("fruit", &FRUIT),
             Self::Frames => ("frames", &FRAMES),
         };
-        let column = |own: &(&str, Kind, &str)| Column::titled(own.0, own.1, own.2);
+        let column = |own: &(&str, Kind, &str)| titled(own.0, own.1, own.2);
         Schema {
             table,
             version: VERSION,

@@ -8,9 +8,9 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
 use windfall_campaign::pipeline::request::FitRequest;
-use windfall_columnar::container::Container;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
+use windfall_files::sheet::form::Form;
 use windfall_inspect::gather::text::text_of_watched;
 use windfall_inspect::gather::watch::watch;
 use windfall_measure::any_outcome::AnyOutcome;
@@ -25,7 +25,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         ..arguments.request.clone()
     };
     let out = arguments.out.as_deref();
-    let out = out.map(|path| Ok::<_, Error>((path, Container::of_path("--out", path)?)));
+    let out = out.map(|path| Ok::<_, Error>((path, Form::of_path("--out", path)?)));
     let out = out.transpose()?;
     if arguments.watch {
         message(&format!("watching {}/raw; Ctrl-C ends it", path.display()));
@@ -56,8 +56,8 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         None => fit_any(path, request, progress),
     });
     let outcome = outcome.map_err(tell_failures)?;
-    if let Some((path, container)) = out {
-        write_any(path, container, &outcome)?;
+    if let Some((path, form)) = out {
+        write_any(path, form, &outcome)?;
     }
     match arguments.format {
         Format::Json => write_result(&(outcome.json()? + "\n"))?,

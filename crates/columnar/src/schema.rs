@@ -1,9 +1,5 @@
-//! Tables with a schema: what each column is called, holds and means, for CSV and for the
-//! column files of other programs alike.
+//! What a table is: what each of its columns is called, holds and means.
 
-use crate::error::Error;
-use crate::table::write::{csv_text, number_cell};
-use crate::text::column_title::column_title;
 use std::borrow::Cow;
 
 /// What the cells of a column are. A cell of every kind may be blank.
@@ -67,7 +63,7 @@ impl<'a> Cell<'a> {
         match self {
             Self::Blank => String::new(),
             Self::Number(value) if kind == Kind::Single => (*value as f32).to_string(),
-            Self::Number(value) => number_cell(Some(*value)),
+            Self::Number(value) => value.to_string(),
             Self::Count(count) => count.to_string(),
             Self::Flag(flag) => flag.to_string(),
             Self::Text(text) => text.to_string(),
@@ -91,11 +87,6 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column whose unit stands in its name: `peak_force_N`.
-    pub fn titled(name: &str, kind: Kind, meaning: &str) -> Self {
-        Self::new(name, kind, meaning).in_unit(column_title(name).1)
-    }
-
     /// A column that is always there.
     pub fn new(name: impl Into<String>, kind: Kind, meaning: impl Into<String>) -> Self {
         Self {
@@ -139,69 +130,5 @@ impl Schema {
     /// Names of its columns.
     pub fn names(&self) -> Vec<&str> {
         self.columns.iter().map(|own| own.name.as_str()).collect()
-    }
-
-    /// Rows as CSV.
-    ///
-    /// * `rows`: cells in the order of the columns; all rows are looked at twice
-    ///
-    /// # Errors
-    /// A row has not as many cells as there are columns.
-    pub fn csv<'a, R>(&self, rows: R) -> Result<String, Error>
-    where
-        R: Iterator<Item = Vec<Cell<'a>>> + Clone,
-    {
-        let mut shown: Vec<bool> = self.columns.iter().map(|own| !own.seldom).collect();
-        let kinds: Vec<Kind> = self.columns.iter().map(|own| own.kind).collect();
-        for row in rows.clone() {
-            for (shown, cell) in shown.iter_mut().zip(&row) {
-                *shown |= *cell != Cell::Blank;
-            }
-        }
-        let columns = self.columns.iter().zip(&shown);
-        let names = columns.filter(|(_, shown)| **shown);
-        let header: Vec<&str> = names.map(|(own, _)| own.name.as_str()).collect();
-        let lines = rows.map(|row| {
-            let cells = row.iter().zip(&kinds).zip(&shown);
-            let cells = cells.filter(|(_, shown)| **shown);
-            cells.map(|((cell, kind), _)| cell.csv(*kind)).collect()
-        });
-        csv_text(&header, lines)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn closed_form_csv_goes_without_what_is_seldom_and_blank() {
-        let column = |name: &str, kind| Column::new(name, kind, "");
-        let schema = Schema {
-            table: "test",
-            version: 1,
-            columns: vec![
-                column("id", Kind::Text),
-                column("gain", Kind::Number).seldom(),
-                column("delay_s", Kind::Number).in_unit("s").seldom(),
-                column("samples", Kind::Count),
-                column("converged", Kind::Flag),
-            ],
-            notes: Vec::new(),
-        };
-        let row = |delay| {
-            vec![
-                Cell::text("=a"),
-                Cell::Blank,
-                Cell::number(delay),
-                Cell::Count(3),
-                Cell::Flag(true),
-            ]
-        };
-        let text = schema.csv([row(None), row(Some(0.1))].into_iter()).unwrap();
-        assert_eq!(
-            text,
-            "id,delay_s,samples,converged\n'=a,,3,true\n'=a,0.1,3,true\n"
-        );
     }
 }

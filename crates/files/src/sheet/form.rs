@@ -1,29 +1,28 @@
-//! What a file of columns is, by its ending.
+//! What a table is written as, by the ending of its file's name.
 
+use crate::error::Error;
+use crate::option_value::unusable;
 use std::path::Path;
-use windfall_files::error::Error;
-use windfall_files::option_value::unusable;
+use windfall_columnar::write::Container;
 
 /// Form of a table in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Container {
+pub enum Form {
     /// Lines of text.
     Csv,
-    /// Apache Parquet, compressed by Snappy.
-    Parquet,
-    /// An Arrow file (IPC), which programs map into memory as it is.
-    Arrow,
+    /// Columns, for other programs.
+    Columns(Container),
 }
 
 /// Endings of names, and what they stand for.
-const ENDINGS: [(&str, Container); 4] = [
-    ("csv", Container::Csv),
-    ("parquet", Container::Parquet),
-    ("arrow", Container::Arrow),
-    ("feather", Container::Arrow),
+const ENDINGS: [(&str, Form); 4] = [
+    ("csv", Form::Csv),
+    ("parquet", Form::Columns(Container::Parquet)),
+    ("arrow", Form::Columns(Container::Arrow)),
+    ("feather", Form::Columns(Container::Arrow)),
 ];
 
-impl Container {
+impl Form {
     /// The form that the ending of a file's name asks for.
     ///
     /// * `option`: the option that names the file, for the message
@@ -32,10 +31,9 @@ impl Container {
     /// It has none of the known endings.
     pub fn of_path(option: &str, path: &Path) -> Result<Self, Error> {
         let ending = path.extension().and_then(|own| own.to_str()).unwrap_or("");
-        let known = ENDINGS
-            .iter()
-            .find(|(own, _)| ending.eq_ignore_ascii_case(own));
-        known.map(|(_, container)| *container).ok_or_else(|| {
+        let mut known = ENDINGS.iter();
+        let known = known.find(|(own, _)| ending.eq_ignore_ascii_case(own));
+        known.map(|(_, form)| *form).ok_or_else(|| {
             let problem = "the ending of the name says what is written: .csv, .parquet or .arrow";
             unusable(format!("{option} {}", path.display()), problem)
         })
