@@ -3,6 +3,7 @@
 pub mod card;
 pub mod covariates;
 pub mod detail;
+mod draws_table;
 pub mod outcome;
 pub mod ranking;
 pub mod run;

@@ -3,6 +3,7 @@
 
 use crate::covariates::find_covariates;
 use crate::detail::draws_document;
+use crate::draws_table::DrawsTable;
 use crate::outcome::{
     FruitOutcome, PopulationOutcome, Varying, correlations_of, effects_of, parameters_of,
     population_of, posterior_outcome, two_stage_outcome,
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::cell::Cell;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use windfall_campaign::impacts::answer::{Question, answer};
 use windfall_campaign::impacts::bench::find_rig;
 use windfall_campaign::impacts::card::add_outer;
@@ -30,6 +31,8 @@ use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::{Progress, for_each};
 use windfall_files::provenance::VERSION;
+use windfall_files::sheet::form::Form;
+use windfall_files::sheet::write::write_rows;
 use windfall_files::write_file::{check_outputs, write_whole};
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::population::finding::PopulationFinding;
@@ -108,12 +111,23 @@ pub fn population(
         };
         let (mut outcome, told) = answer(&question, reuse, work)?;
         if let (Some(path), Some(draws)) = (&request.detail, draws) {
-            write_whole(path, format!("{draws}\n").as_bytes())?;
+            write_draws(path, &draws)?;
         }
         outcome.findings.extend(told);
         outcome.findings.extend(priors);
         Ok(outcome)
     })
+}
+
+/// Writes draws: as a table where the file's name ends like one, else as JSON.
+fn write_draws(path: &Path, draws: &Value) -> Result<(), Error> {
+    match Form::of_path("--detail", path) {
+        Ok(form) => {
+            let table = DrawsTable::new(draws);
+            write_rows(path, form, &table.schema, table.rows())
+        }
+        Err(_) => write_whole(path, format!("{draws}\n").as_bytes()),
+    }
 }
 
 /// The population, with the draws of its posterior if these are wanted.

@@ -46,7 +46,8 @@ pub struct PopulationArguments {
     /// Seed of the posterior's draws (1)
     #[arg(long, value_name = "N", requires = "posterior")]
     pub seed: Option<u64>,
-    /// Write the posterior's draws as JSON for arviz.from_json; draws them anew
+    /// Write the posterior's draws, as JSON for arviz.from_json or as a table (.parquet, .arrow or
+    /// .csv); draws them anew
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "posterior")]
     pub detail: Option<PathBuf>,
     /// Write the population as a law card (TOML, or JSON where the name ends with .json)
