@@ -4,6 +4,8 @@ use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use smol_str::SmolStr;
+use std::collections::HashMap;
+use std::hash::Hash;
 use std::marker::PhantomData;
 
 /// Values under names, in the order they were given.
@@ -28,12 +30,19 @@ impl<N: Into<SmolStr>, T> FromIterator<(N, T)> for Named<T> {
 }
 
 /// Values under keys, keys in the order of their first appearance.
-pub fn grouped<K: PartialEq, T>(pairs: impl IntoIterator<Item = (K, T)>) -> Vec<(K, Vec<T>)> {
+pub fn grouped<K, T>(pairs: impl IntoIterator<Item = (K, T)>) -> Vec<(K, Vec<T>)>
+where
+    K: Clone + Eq + Hash,
+{
     let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    let mut places: HashMap<K, usize> = HashMap::new();
     for (key, value) in pairs {
-        match groups.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, members)) => members.push(value),
-            None => groups.push((key, vec![value])),
+        match places.get(&key) {
+            Some(place) => groups[*place].1.push(value),
+            None => {
+                places.insert(key.clone(), groups.len());
+                groups.push((key, vec![value]));
+            }
         }
     }
     groups

@@ -5,6 +5,7 @@
 use crate::result::outcome::ImpactOutcome;
 use crate::settings::model::{Campaign, ImpactEntry};
 use itertools::Itertools;
+use std::collections::HashMap;
 use windfall_files::found::{FailureOutcome, FindingOutcome, robust_spread};
 use windfall_files::named::grouped;
 use windfall_files::table::data::{EXCLUDE_COLUMN, excludes};
@@ -69,9 +70,11 @@ impl ImpactOutcome {
 /// impacts on one fruit or a factor of 2.7 among fruit: a soft fruit among hard ones counts, a
 /// failed fit does not).
 pub fn mark_left_out(campaign: &Campaign, rig: &Rig, impacts: &mut [ImpactOutcome]) {
+    let entries = campaign.entries.iter();
+    let entries: HashMap<&str, &ImpactEntry> = entries.map(|own| (own.id.as_str(), own)).collect();
     for impact in impacts.iter_mut() {
-        let entry = campaign.entries.iter().find(|own| own.id == impact.id);
-        impact.left_out = entry.and_then(excluded).into_iter().collect();
+        let entry = entries.get(impact.id.as_str());
+        impact.left_out = entry.and_then(|own| excluded(own)).into_iter().collect();
         let reasons = own_reasons(impact, rig);
         impact.left_out.extend(reasons);
     }
