@@ -4,10 +4,12 @@ use crate::args::format::Format;
 use crate::args::scene::{
     ExportName, SceneCommand, SceneExportArguments, SceneRunArguments, SceneStudyArguments,
 };
-use crate::command::fit::with_bar;
+use crate::caller::watch;
 use crate::command::scene_view;
+use crate::progress::with_bar;
 use crate::show::{show, write_json, write_result};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use windfall_engines::contacts::export_contacts;
 use windfall_engines::parameters::Other;
@@ -76,11 +78,18 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         },
         ..arguments.request.clone()
     };
+    // Another program that runs this as a library, such as an interpreter, is not started again.
+    let own = std::env::current_exe().ok();
+    let own = own.filter(|path| path.file_stem().is_some_and(|stem| stem == "windfall"));
     let engine = EngineRequest {
-        windfall: std::env::current_exe().ok(),
+        windfall: own,
         ..arguments.engine.clone()
     };
-    let interrupted = interruption();
+    // A program that called has signals of its own, and says when to stop.
+    let interrupted = match watch().is_some() {
+        true => Arc::default(),
+        false => interruption(),
+    };
     let outcome = with_bar(|shown| {
         let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
