@@ -1,0 +1,6 @@
+from collections.abc import Callable, Sequence
+
+_Tell = Callable[[int, int], None] | None
+
+def call(words: Sequence[str], progress: _Tell = None) -> tuple[str, str, int]: ...
+def main(words: Sequence[str]) -> int: ...
