@@ -1,11 +1,13 @@
-"""What the tests work on: the command, and a campaign of windfall's own example."""
+"""What the tests work on: a campaign of windfall's own example, and one of its recordings."""
 
 from __future__ import annotations
 
 import subprocess
 import sysconfig
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 import windfall as wf
 
@@ -30,8 +32,43 @@ def windfall() -> Command:
     return Command()
 
 
+@pytest.fixture(scope="session")
+def rig() -> wf.Pendulum:
+    return wf.Pendulum(
+        inertia="0.01435 kg m^2", arm="0.505 m", mass="0.11 kg", centre_of_mass="0.3 m"
+    )
+
+
 @pytest.fixture
 def campaign(tmp_path: Path) -> Path:
     directory = tmp_path / "campaign"
     wf.simulate_pendulum(example=directory)
     return directory
+
+
+@pytest.fixture(scope="session")
+def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
+    """Impacts of four simulated fruit: times, position and force, in SI."""
+    directory = tmp_path_factory.mktemp("recordings") / "campaign"
+    wf.simulate_pendulum(
+        law="kuwabara-kono(k=753599, c=1524)",
+        recordings=directory,
+        specimens=4,
+        encoder="counts",
+        rate="100 kHz",
+    )
+    return [arrays_of(wf.read(path)) for path in sorted((directory / "raw").iterdir())]
+
+
+def arrays_of(recording: wf.Recording) -> dict[str, Any]:
+    counts, volts = recording["count"].values, recording["force_V"].values
+    return {
+        "t": np.arange(len(counts)) / 100_000.0,
+        "x": 0.505 * np.sin(counts * (2 * np.pi / 360_000.0)),
+        "force": volts / 0.011,
+    }
+
+
+@pytest.fixture(scope="session")
+def arrays(recordings: list[dict[str, Any]]) -> dict[str, Any]:
+    return recordings[0]

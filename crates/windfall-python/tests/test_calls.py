@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import tqdm.auto
 import windfall as wf
 
 
@@ -123,33 +124,22 @@ def test_the_command_answers_like_windfall(windfall: Any) -> None:
     assert "Usage" in windfall.out("regress", "--help")
 
 
-class Bar:
-    """What progress uses of a bar of tqdm; it keeps what it was told."""
+def test_progress_is_told_to_tqdm(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], campaign: Path
+) -> None:
+    told: list[tuple[float, float | None]] = []
 
-    told: list[tuple[int, int]] = []
+    class Told(tqdm.auto.tqdm):  # type: ignore[type-arg]
+        def update(self, n: float | None = 1) -> bool | None:
+            shown = super().update(n)
+            told.append((self.n, self.total))
+            return shown
 
-    def __init__(self, **_: Any) -> None:
-        self.n, self.total = 0, 0
-
-    def __enter__(self) -> Bar:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return None
-
-    def update(self, by: int) -> None:
-        self.n += by
-        self.told.append((self.n, self.total))
-
-
-def test_progress_is_told_to_tqdm(monkeypatch: pytest.MonkeyPatch, campaign: Path) -> None:
-    module = type(sys)("tqdm")
-    module.__spec__ = type("Spec", (), {})()
-    auto = type(sys)("tqdm.auto")
-    auto.tqdm = Bar  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "tqdm", module)
-    monkeypatch.setitem(sys.modules, "tqdm.auto", auto)
+    monkeypatch.setattr(tqdm.auto, "tqdm", Told)
     wf.Campaign(campaign).fit(progress=True, intervals="bootstrap", replicates=100)
-    assert Bar.told
-    assert Bar.told[-1] == (80, 80)
-    assert Bar.told == sorted(Bar.told)
+    assert told[-1] == (80, 80)
+    assert told == sorted(told)
+    assert "80/80" in capsys.readouterr().err
+    told.clear()
+    wf.Campaign(campaign).fit()
+    assert told == []
