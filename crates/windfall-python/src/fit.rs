@@ -65,7 +65,7 @@ pub fn fit(
     words: Vec<OsString>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<Found>> {
-    let mut words: FitWords = parsed(words)?;
+    let words: FitWords = parsed(words)?;
     let fit = &words.fit;
     if fit.figures.is_some() || fit.detail.is_some() || fit.card.is_some() {
         let told = "fits of arrays write nothing; what --detail writes is in `detail`";
@@ -73,13 +73,9 @@ pub fn fit(
     }
     let held: Vec<_> = held.into_iter().map(|own| (own.0, own.1.into())).collect();
     let fits = beside(py, progress, move |watch| {
-        if let [one] = held.as_slice() {
-            return Ok(vec![fit_one(one, &words, &*watch)]);
-        }
-        // Each fit has one of the threads.
-        let threads = words.fit.threads.replace(1);
-        on_threads(threads, || {
-            for_each(&*watch, held.len(), |at| fit_one(&held[at], &words, &quiet))
+        on_threads(words.fit.threads, || match held.as_slice() {
+            [one] => Ok(vec![fit_one(one, &words, &*watch)]),
+            many => for_each(&*watch, many.len(), |at| fit_one(&many[at], &words, &quiet)),
         })
     })?;
     let fits = fits.map_err(|error| raised(py, &error))?.into_iter();

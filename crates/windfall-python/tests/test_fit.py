@@ -90,6 +90,9 @@ def test_repeats_single_fits_in_many_on_any_number_of_threads(
         assert [own.result for own in many] == [own.result for own in single]
         assert many.failed == ()
     assert [own.id for own in single[::2]] == names
+    # So many that none may wait inside of another.
+    many = wf.fit_many(recordings * 100, rig=rig, law="hertz", names=names * 100, threads=2)
+    assert [own.result for own in many] == [own.result for own in single[1::2]] * 100
 
 
 def test_a_recording_that_fails_does_not_stop_the_others(

@@ -144,6 +144,10 @@ impl FittedRecording {
 /// * `name`: what it is called in messages and results; the seed of intervals depends on it
 /// * `held`: the bytes that its file would have
 ///
+/// It works on the threads of the caller, who may fit many recordings on them: a pool of
+/// threads within another one would take up further recordings while it waits for the first,
+/// one inside of the other.
+///
 /// # Errors
 /// Those of [`fit_recording`].
 pub fn fit_bytes(
@@ -154,7 +158,7 @@ pub fn fit_bytes(
 ) -> Result<FittedRecording, Error> {
     let mut campaign = campaign_of_bytes(name, held, recording)?;
     apply_request(&mut campaign, request)?;
-    let fitted = on_threads(request.threads, || fit(campaign, None, request, progress))?;
+    let fitted = fit(campaign, None, request, progress)?;
     Ok(FittedRecording { fitted })
 }
 
