@@ -73,10 +73,16 @@ pub fn fit(
     }
     let held: Vec<_> = held.into_iter().map(|own| (own.0, own.1.into())).collect();
     let fits = beside(py, progress, move |watch| {
-        on_threads(words.fit.threads, || match held.as_slice() {
+        let threads = words.fit.threads;
+        let work = || match held.as_slice() {
             [one] => Ok(vec![fit_one(one, &words, &*watch)]),
             many => for_each(&*watch, many.len(), |at| fit_one(&many[at], &words, &quiet)),
-        })
+        };
+        // The threads that are there do for all cores.
+        match threads {
+            None => work(),
+            threads => on_threads(threads, work),
+        }
     })?;
     let fits = fits.map_err(|error| raised(py, &error))?.into_iter();
     Ok(fits

@@ -61,6 +61,8 @@ def test_data_frames_are_tables(table: Path, frame: Any) -> None:
     expected = wf.regress(table, formula="k ~ V + fruit")
     assert wf.regress(frame(TABLE), formula="k ~ V + fruit") == expected
     assert wf.regress(str(table), formula="k ~ V + fruit") == expected
+    with pytest.raises(ValueError, match="^the data frame: "):
+        wf.regress(frame(TABLE), formula="k ~ W")
 
 
 def test_lists_repeat_their_option(windfall: Any, table: Path) -> None:

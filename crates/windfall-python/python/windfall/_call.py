@@ -63,6 +63,7 @@ def call(
             given += words.of_values(place)
         with bar(progress) as tell:
             text, messages, status = _native.call(given, tell)
+        messages = words.without_files(messages)
     return outcome(text, messages, status)
 
 
@@ -85,7 +86,7 @@ class Words:
 
     def __init__(self) -> None:
         self._folder: TemporaryDirectory[str] | None = None
-        self._tables = 0
+        self._files: list[str] = []
 
     def __enter__(self) -> Words:
         return self
@@ -131,5 +132,11 @@ class Words:
     def _path(self) -> str:
         if self._folder is None:
             self._folder = TemporaryDirectory(prefix="windfall-")
-        self._tables += 1
-        return os.path.join(self._folder.name, f"table-{self._tables}.csv")
+        self._files.append(os.path.join(self._folder.name, f"{len(self._files)}.csv"))
+        return self._files[-1]
+
+    def without_files(self, text: str) -> str:
+        """Messages that do not name the files of data frames."""
+        for file in self._files:
+            text = text.replace(file, "the data frame")
+        return text
