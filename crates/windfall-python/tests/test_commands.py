@@ -126,7 +126,7 @@ def test_campaigns_and_cards_are_the_commands(windfall: Any, campaign: Path) -> 
         windfall.out("fit", str(campaign), "--format=json")
     )["impacts"]
     population = own.population(covariate="log(impact_velocity)")
-    card = population.card()
+    card = pickle.loads(pickle.dumps(population)).card()
     impact = card.simulate(mass="0.2 kg", velocity="0.5 m/s")
     printed = windfall.out(
         "simulate", "impact", f"--law={card.path}", "--mass=0.2 kg", "--velocity=0.5 m/s",

@@ -9,6 +9,7 @@ use crate::command::scene_view;
 use crate::progress::with_bar;
 use crate::show::{show, write_json, write_result};
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use windfall_engines::contacts::export_contacts;
@@ -78,11 +79,8 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         },
         ..arguments.request.clone()
     };
-    // Another program that runs this as a library, such as an interpreter, is not started again.
-    let own = std::env::current_exe().ok();
-    let own = own.filter(|path| path.file_stem().is_some_and(|stem| stem == "windfall"));
     let engine = EngineRequest {
-        windfall: own,
+        windfall: command(),
         ..arguments.engine.clone()
     };
     // A program that called has signals of its own, and says when to stop.
@@ -98,6 +96,14 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         run_on_engine(&arguments.file, &request, &engine, &progress)
     })?;
     show(arguments.format, &outcome, text_of_scene, csv_of_scene)
+}
+
+/// The command itself, which ranks start: this program, or the script that an interpreter runs.
+fn command() -> Option<PathBuf> {
+    let words = std::env::args_os().take(2).map(PathBuf::from);
+    let mut programs = std::env::current_exe().ok().into_iter().chain(words);
+    let is_windfall = |path: &Path| path.file_stem().is_some_and(|stem| stem == "windfall");
+    programs.find(|path| is_windfall(path) && path.is_file())
 }
 
 fn run_variants(arguments: &SceneStudyArguments) -> anyhow::Result<()> {

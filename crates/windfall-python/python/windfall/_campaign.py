@@ -56,6 +56,10 @@ class Population(Result):
         object.__setattr__(self, "_directory", directory)
         object.__setattr__(self, "_options", options)
 
+    def __reduce__(self) -> Any:
+        found = Result(self.to_dict(), self.messages)
+        return Population, (self._directory, self._options, found)
+
     def card(self, path: Path | None = None, **options: Any) -> Card:
         """Its law card, written to `path`, or for as long as the card is used."""
         folder = None
