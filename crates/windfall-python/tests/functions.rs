@@ -121,7 +121,7 @@ fn function(command: &str, own: &Command) -> String {
     for argument in &options {
         writeln!(text, "    {},", parameter(command, argument)).unwrap();
     }
-    text += "    force: bool = False,\n    also_read: Sequence[Path] = (),\n";
+    text += "    force: bool = False,\n    also_read: Path | Sequence[Path] = (),\n";
     text += "    progress: bool = False,\n) -> Result:\n";
     text += &docstring(&described(command, own, places.iter().chain(&options)));
     let json = own.get_arguments().any(|own| own.get_id() == "format");

@@ -32,6 +32,18 @@ def test_files_of_others_are_replaced_by_the_call_alone_that_says_force(tmp_path
         assert mine.read_text() != "mine"
 
 
+def test_directories_are_read_by_the_call_alone_that_names_them(tmp_path: Path) -> None:
+    (tmp_path / "laws").mkdir()
+    (tmp_path / "other").mkdir()
+    force = "displacement_m,force_N\n0,0\n0.001,10\n0.002,40\n"
+    law = table(tmp_path / "other" / "force.csv", force)
+    file = table(tmp_path / "laws" / "laws.toml", f'[laws.spring]\ntable = "{law}"\n')
+    for also in (law.parent, str(law.parent), [law.parent]):
+        with pytest.raises(ValueError, match="--also-read"):
+            wf.card_show(laws=file)
+        assert wf.card_show(laws=file, also_read=also).laws[0].name == "spring"
+
+
 def test_inputs_are_never_replaced(tmp_path: Path) -> None:
     source = table(tmp_path / "source.csv")
     text = source.read_text()

@@ -41,7 +41,7 @@ def call(
     *,
     json: bool,
     force: bool,
-    also_read: Sequence[Path],
+    also_read: Path | Sequence[Path],
     progress: bool,
 ) -> Result:
     """Runs a command.
@@ -56,8 +56,7 @@ def call(
         given = command.split()
         for option, value in options.items():
             given += words.of_option(option, value)
-        for directory in also_read:
-            given.append(f"--also-read={os.fspath(directory)}")
+        given += words.of_option("--also-read", also_read)
         given += ["--format=json"] * json + ["--force"] * force + ["--"]
         for place in places:
             given += words.of_values(place)

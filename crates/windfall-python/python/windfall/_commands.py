@@ -69,7 +69,7 @@ def new(
     names: Value | None = None,
     preset: Value | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Write a commented template of a campaign or a scene.
@@ -106,7 +106,7 @@ def add(
     *,
     names: Value | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """List further recordings in a campaign.
@@ -148,7 +148,7 @@ def inspect(
     missing: Value | Sequence[Value] | None = None,
     footer: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Show what recordings hold and what looks wrong.
@@ -243,7 +243,7 @@ def fit_campaign(
     count_length: Value | None = None,
     threshold: Value | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Fit force laws to the impacts of a campaign.
@@ -367,7 +367,7 @@ def laws(
     refit: bool = False,
     threads: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Compare force laws: which one the impacts of a campaign obey, and how sure that is.
@@ -418,7 +418,7 @@ def population(
     refit: bool = False,
     threads: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Estimate how the law varies between fruit and with covariates.
@@ -471,7 +471,7 @@ def report(
     group: Value | None = None,
     threads: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Write figures, tables and a page on a campaign: methods, results, findings, origin.
@@ -518,7 +518,7 @@ def calibrate(
     profile: bool = False,
     threads: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Calibrate a contact law to dropped fruit: by features, and by design and surface.
@@ -579,7 +579,7 @@ def plan_mean(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A mean: half-width of its interval, or its difference from a reference.
@@ -675,7 +675,7 @@ def plan_difference(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A difference between two groups of fruit, or between two treatments of the same fruit.
@@ -777,7 +777,7 @@ def plan_groups(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Differences between the means of several groups.
@@ -875,7 +875,7 @@ def plan_slope(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A slope on a property of the fruit, or on what changes between the impacts of a fruit.
@@ -978,7 +978,7 @@ def plan_model(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A term of a mixed model of earlier impacts, by simulation.
@@ -1079,7 +1079,7 @@ def plan_surface(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """The optimum of a response surface: the response there, and where it lies.
@@ -1183,7 +1183,7 @@ def plan_population(
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A parameter of a population of laws: its median, and its spread between fruit.
@@ -1261,7 +1261,7 @@ def plan_critical_energy(
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """The critical impact energy, by simulation.
@@ -1336,7 +1336,7 @@ def plan_achieved(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Look back: what a finished table has achieved, and what more or fewer fruit would have.
@@ -1387,7 +1387,7 @@ def design_factorial(
     centre: int | None = None,
     blocks: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """All combinations of levels, or a two-level fraction of them.
@@ -1440,7 +1440,7 @@ def design_plackett_burman(
     runs: int | None = None,
     centre: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Main effects of many factors in few runs.
@@ -1488,7 +1488,7 @@ def design_ccd(
     centre: Value | None = None,
     blocks: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Central composite: cube, axial points, centre; for a quadratic model.
@@ -1542,7 +1542,7 @@ def design_box_behnken(
     centre: int | None = None,
     blocks: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Three levels without corners, 3 to 7 factors; for a quadratic model.
@@ -1586,7 +1586,7 @@ def design_latin_hypercube(
     out: Path | None = None,
     runs: int,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Levels each used once, points far apart; for computer experiments.
@@ -1628,7 +1628,7 @@ def design_sobol(
     out: Path | None = None,
     runs: int,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Sobol points: fill the space evenly, more can be added.
@@ -1675,7 +1675,7 @@ def design_d_optimal(
     points: int | None = None,
     starts: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Best for the coefficients of a given model.
@@ -1733,7 +1733,7 @@ def design_i_optimal(
     points: int | None = None,
     starts: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Best for the predictions of a given model.
@@ -1793,7 +1793,7 @@ def design_split_plot(
     points: int | None = None,
     starts: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Whole plots of runs for factors that are hard to change; best for a given model.
@@ -1852,7 +1852,7 @@ def simulate_impact(
     end: Literal["force-zero", "gap-zero"] | None = None,
     plot: Path | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A free body strikes once: peaks, duration, restitution, energy.
@@ -1914,7 +1914,7 @@ def simulate_pendulum(
     end: Literal["force-zero", "gap-zero"] | None = None,
     seed: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A pendulum strikes: motion, or a campaign of recordings.
@@ -1995,7 +1995,7 @@ def simulate_carriage(
     seed: int | None = None,
     end: Literal["force-zero", "gap-zero"] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A body on a line strikes: motion, or a campaign of recordings.
@@ -2062,7 +2062,7 @@ def simulate_compression(
     sampling_rate: Value | None = None,
     seed: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Slow compressions: a campaign of recordings.
@@ -2123,7 +2123,7 @@ def simulate_tap(
     sampling_rate: Value | None = None,
     seed: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Taps on fruit: a campaign of sound recordings.
@@ -2183,7 +2183,7 @@ def simulate_repeats(
     sampling_rate: Value | None = None,
     seed: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Drops repeated on one spot of fruit with a critical energy: a campaign of recordings.
@@ -2268,7 +2268,7 @@ def simulate_drop(
     lowest: Value | None = None,
     seed: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """A fruit falls on a plate and bounces: impacts, motion, or a campaign of recordings.
@@ -2383,7 +2383,7 @@ def scene_run(
     classes: int | None = None,
     frame_steps: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Run a scene, and write every contact and every fruit.
@@ -2443,7 +2443,7 @@ def scene_study(
     out: Path | None = None,
     threads: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Run variants of a scene several times each, and compare who is bruised.
@@ -2478,7 +2478,7 @@ def scene_picture(
     theme: Literal["light", "dark"] | None = None,
     out: Path | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Draw a scene that has run: walls, and fruit coloured by their largest impact.
@@ -2514,7 +2514,7 @@ def scene_vtk(
     *,
     out: Path | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Write the frames of a scene that has run for ParaView.
@@ -2546,7 +2546,7 @@ def scene_export(
     classes: int | None = None,
     frame_steps: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Write a scene as a complete deck for LAMMPS or LIGGGHTS, or its contacts for others.
@@ -2592,7 +2592,7 @@ def summary(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Describe the values of a table group by group: mean, SD, CV, interval, quartiles.
@@ -2648,7 +2648,7 @@ def compare(
     predicted: Value | None = None,
     parameters: int | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Compare groups of a table, or predictions with what was measured.
@@ -2735,7 +2735,7 @@ def regress(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Fit a linear model to a table.
@@ -2858,7 +2858,7 @@ def surface(
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Fit response surfaces to a table of runs, and find the best settings.
@@ -2932,7 +2932,7 @@ def radius(
     diameters: Value | None = None,
     against: Value | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Radius of curvature from a chord gauge or three diameters.
@@ -2973,7 +2973,7 @@ def bounces(
     gravity: Value | None = None,
     confidence: float | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Restitution from the times between successive impacts of a bouncing fruit.
@@ -3024,7 +3024,7 @@ def bruise(
     radius: Value | None = None,
     table: Table | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Volumes of bruises from their measured widths and depths.
@@ -3061,7 +3061,7 @@ def card_show(
     fruit: Value | None = None,
     at: Value | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Show the force laws, or published values: parameters, units, source.
@@ -3106,7 +3106,7 @@ def card_transfer(
     to_fruit: bool = False,
     card: Path | None = None,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Take a law from one geometry to another by R* and E*.
@@ -3152,7 +3152,7 @@ def explain(
     codes: Value | Sequence[Value] | None = None,
     *,
     force: bool = False,
-    also_read: Sequence[Path] = (),
+    also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
     """Explain findings: what they mean and what to do.
