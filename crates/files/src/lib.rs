@@ -15,6 +15,7 @@ pub mod place;
 pub mod progress;
 pub mod provenance;
 pub mod scratch;
+pub mod sheet;
 pub mod table;
 pub mod text;
 pub mod write_file;

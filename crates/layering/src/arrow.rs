@@ -16,8 +16,12 @@ const ARROWS: &[(&str, &str)] = &[
     ("drop-rig", "distribution identify signal contact numerics"),
     ("scene", "contact numerics"),
     ("source", ""),
+    ("columnar", ""),
     ("formats", "source"),
-    ("files", "statistics distribution formats source numerics"),
+    (
+        "files",
+        "columnar statistics distribution formats source numerics",
+    ),
     ("draw", "files"),
     ("cards", "files contact numerics"),
     ("tables", "design draw files statistics mixed distribution"),

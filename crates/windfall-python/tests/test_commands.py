@@ -125,6 +125,8 @@ def test_campaigns_and_cards_are_the_commands(windfall: Any, campaign: Path) -> 
     assert fitted.to_dict()["impacts"] == json.loads(
         windfall.out("fit", str(campaign), "--format=json")
     )["impacts"]
+    own.fit(out=campaign / "fits.parquet")
+    assert polars.read_parquet(campaign / "fits.parquet").height == 80
     population = own.population(covariate="log(impact_velocity)")
     card = pickle.loads(pickle.dumps(population)).card()
     impact = card.simulate(mass="0.2 kg", velocity="0.5 m/s")

@@ -3,7 +3,6 @@
 pub mod answer;
 pub mod bench;
 pub mod card;
-pub mod csv;
 mod detail;
 pub mod failed_fit;
 pub mod figure_impact;
@@ -14,5 +13,6 @@ pub mod key;
 pub mod mass;
 mod response;
 pub mod run;
+pub mod table;
 pub mod text;
 pub mod two_stage;

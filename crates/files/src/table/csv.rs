@@ -8,6 +8,7 @@
 use crate::error::{Error, Place};
 use crate::inputs::{check_piped, protect};
 use crate::known_names::told_names;
+use crate::table::columns_text::{ColumnsText, column_files};
 use crate::table::records::{Block, Blocks, Records};
 use crate::table::write::plain_cell;
 use std::borrow::Cow;
@@ -158,9 +159,16 @@ fn names_of(path: &Path, header: &Block, separator: u8) -> Result<Vec<String>, E
     Ok(columns)
 }
 
-/// The text of a file, without byte order mark.
+/// The text of a file, without byte order mark; of files of columns that which they would be as
+/// CSV.
 fn utf8(path: &Path) -> Result<Box<dyn BufRead>, Error> {
     let failed = |source| access(path, source);
+    if !is_stream(path) {
+        let columns = column_files(path).and_then(ColumnsText::open);
+        if let Some(text) = columns.map_err(failed)? {
+            return Ok(Box::new(BufReader::with_capacity(1 << 16, text)));
+        }
+    }
     let mut reader: Box<dyn BufRead> = match is_stream(path) {
         true => Box::new(Cursor::new(stream_bytes(path).map_err(failed)?)),
         false => {

@@ -5,5 +5,6 @@ pub(crate) mod figure;
 pub mod history;
 pub(crate) mod order;
 pub mod read;
+pub mod table;
 pub mod view;
 pub(crate) mod vtk;

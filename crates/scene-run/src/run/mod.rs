@@ -2,6 +2,7 @@
 
 pub mod advance;
 pub mod checkpoint;
+pub mod columns;
 mod fallen;
 pub mod frame_format;
 pub(crate) mod frames;

@@ -4,6 +4,7 @@ use crate::bruise::scene::{BruiseOutcome, LimitOutcome, PlaceOutcome};
 use crate::file::engine_kind::Engine;
 use crate::file::key::FRUIT;
 use crate::file::read::ScenePlan;
+use crate::run::columns::SceneTable;
 use crate::run::growing::{GrowingFile, partial_of};
 use crate::run::outcome::{PartnerOutcome, SceneOutcome, Tally};
 use crate::run::sensors::text::text_of_sensors;
@@ -11,7 +12,7 @@ use crate::run_error::SceneRunError;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use windfall_files::error::Error;
-use windfall_files::table::write::{csv_cell, csv_text};
+use windfall_files::table::write::{csv_cell, csv_header, csv_text};
 use windfall_files::text::columns::{Column, cells_of_rows, csv_of_rows, text_of_rows};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{Cells, page_tables};
@@ -19,17 +20,6 @@ use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::motion::simulation::FruitState;
 use windfall_scene::scene::Scene;
-
-/// Columns of events.csv.
-const EVENT_COLUMNS: &str = "fruit,partner,partner_fruit,time_s,duration_s,lasting,x_m,y_m,z_m,\
-spot_x,spot_y,spot_z,partner_spot_x,partner_spot_y,partner_spot_z,normal_speed_m_s,\
-tangential_speed_m_s,peak_force_N,largest_displacement_m,absorbed_energy_J,friction_energy_J,static,load";
-
-/// Columns of fruit.csv.
-const FRUIT_COLUMNS: &str = "fruit,material,diameter_m,mass_kg,released_s,left_s,sink,x_m,y_m,\
-z_m,contacts,largest_peak_force_N,partner_of_it,time_of_it_s,impact_speed_of_it_m_s,\
-largest_absorbed_energy_J,absorbed_energy_J,bruises,largest_bruise_mm3,static_loads,\
-largest_static_force_N";
 
 /// A table of contacts that grows with the scene; it has its name when it is whole.
 pub struct EventFile {
@@ -51,7 +41,8 @@ impl EventFile {
     /// * `least`: contacts with a smaller peak force are left out; N
     pub fn create(path: &Path, scene: &Scene, least: f64) -> Result<Self, Error> {
         let mut own = Self::open(path, scene, least, (0, 0))?;
-        own.file.write(format!("{EVENT_COLUMNS}\n"))?;
+        let schema = SceneTable::Events.schema();
+        own.file.write(csv_header(&schema.names())?)?;
         Ok(own)
     }
 
@@ -145,10 +136,6 @@ impl EventFile {
     }
 }
 
-fn columns(names: &str) -> Vec<String> {
-    names.split(',').map(str::to_owned).collect()
-}
-
 /// One row per fruit: what it is, what it went through, where it is.
 pub fn fruit_table(
     plan: &ScenePlan,
@@ -207,7 +194,7 @@ pub fn fruit_table(
             ]
         });
     let rows: Vec<Vec<String>> = rows.collect();
-    csv_text(&columns(FRUIT_COLUMNS), rows)
+    csv_text(&SceneTable::Fruit.schema().names(), rows)
 }
 
 /// Contacts by what was touched, for a terminal.

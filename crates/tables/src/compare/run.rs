@@ -32,7 +32,7 @@ const MOST_GROUPS: usize = 1_000;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct CompareRequest {
-    /// Table with a header line (CSV)
+    /// Table with a header line (CSV, Parquet or Arrow), or a folder of Parquet files
     #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
     /// Column of values

@@ -22,7 +22,7 @@ use windfall_statistics::table::Cells;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SummaryRequest {
-    /// Table with a header line (CSV)
+    /// Table with a header line (CSV, Parquet or Arrow), or a folder of Parquet files
     #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
     /// Columns that group the rows, separated by commas; all rows are one group if left out

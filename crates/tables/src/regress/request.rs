@@ -19,7 +19,7 @@ pub use windfall_statistics::model::selection::{Criterion, Direction, SelectionO
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct RegressRequest {
-    /// Table with a header line (CSV)
+    /// Table with a header line (CSV, Parquet or Arrow), or a folder of Parquet files
     #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
     /// What is modelled: a column, or a function of one

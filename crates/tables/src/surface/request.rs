@@ -14,7 +14,7 @@ pub use windfall_statistics::model::anova::AnovaType;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct SurfaceRequest {
-    /// Table of runs with a header line (CSV)
+    /// Table of runs with a header line (CSV, Parquet or Arrow)
     #[cfg_attr(feature = "clap", arg(value_hint = clap::ValueHint::FilePath))]
     pub table: PathBuf,
     /// A response: a column, or a function of columns; may be repeated, each with its --model

@@ -29,6 +29,8 @@ Examples:
       intervals that follow the likelihood, in place of estimate ± t × deviation
   windfall fit my-campaign --intervals posterior --detail fits
       residuals, covariances and draws of each fit: `arviz.from_json(\"fits/….json\")`
+  windfall fit my-campaign --out fits.parquet
+      the table of results for pandas, polars, DuckDB or R, with units in its metadata
   windfall fit my-campaign --watch
       while you measure: each new recording is listed by [files] names, fitted and shown
   windfall fit impact.csv --rig pendulum --inertia '0.01435 kg m^2' --arm '0.505 m' \\
@@ -45,9 +47,12 @@ pub struct FitArguments {
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+    /// Write the table of results into a file, too: .csv, .parquet or .arrow
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub out: Option<PathBuf>,
     /// Fit each recording that lands in DIR/raw, as soon as it stops growing, and show the mean
     /// so far, until Ctrl-C
-    #[arg(long, conflicts_with_all = ["figures", "detail", "card", "rig"])]
+    #[arg(long, conflicts_with_all = ["figures", "detail", "card", "rig", "out"])]
     pub watch: bool,
     /// Rig and channels of a recording without a campaign
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! `windfall scene`: arguments.
 
 use crate::args::format::Format;
-use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
+use crate::args::scene_view::{ScenePictureArguments, SceneTableArguments, SceneVtkArguments};
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use windfall_engines::ranks::follow::RankRequest;
@@ -20,6 +20,8 @@ pub enum SceneCommand {
     Picture(ScenePictureArguments),
     /// Write the frames of a scene that has run for ParaView
     Vtk(SceneVtkArguments),
+    /// Write a table of a scene that has run as Parquet, Arrow or CSV
+    Table(SceneTableArguments),
     /// One rank of LAMMPS: runs the deck of a scene, and writes the pulses that it finds
     #[command(hide = true)]
     Rank(RankRequest),

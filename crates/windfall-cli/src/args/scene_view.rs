@@ -1,9 +1,10 @@
-//! `windfall scene picture` and `windfall scene vtk`: arguments.
+//! `windfall scene picture`, `windfall scene vtk` and `windfall scene table`: arguments.
 
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use windfall_draw::theme::FigureTheme;
+use windfall_scene_run::run::columns::SceneTable;
 
 /// `windfall scene picture`
 #[derive(Debug, Args)]
@@ -57,6 +58,32 @@ pub struct SceneVtkArguments {
     /// Directory to write into; RUN/vtk if left out
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
+    /// How the result is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall scene table`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The ending of FILE says what is written: .parquet or .arrow for pandas, polars, DuckDB, R and others \
+that read columns, .csv for the rest. Columns have their unit in their name, and unit and meaning in the metadata; \
+the file says which version of the table it holds.
+
+Examples:
+  windfall scene table my-scene/scene.run events --out events.parquet
+  windfall scene table my-scene/scene.run frames --out frames.arrow"
+)]
+pub struct SceneTableArguments {
+    /// Directory that `windfall scene run` wrote into, or the scene file beside it
+    #[arg(value_name = "RUN", value_hint = ValueHint::AnyPath)]
+    pub run: PathBuf,
+    /// Which table; frames need [record] frames in the scene
+    #[arg(value_enum, value_name = "TABLE")]
+    pub table: SceneTable,
+    /// File to write: .parquet, .arrow or .csv
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub out: PathBuf,
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

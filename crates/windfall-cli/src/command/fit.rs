@@ -6,16 +6,25 @@ use crate::progress::with_bar;
 use crate::show::{message, show, tell_failures, write_result};
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
+use windfall_campaign::pipeline::request::FitRequest;
 use windfall_files::error::Error;
+use windfall_files::sheet::form::Form;
 use windfall_inspect::gather::text::text_of_watched;
 use windfall_inspect::gather::watch::watch;
 use windfall_measure::any_outcome::AnyOutcome;
-use windfall_report::any_text::{csv_of_any, text_of_any};
+use windfall_report::any_text::{csv_of_any, text_of_any, write_any};
 use windfall_report::fit_any::fit_any;
 
 /// Fits a campaign and shows the result.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
-    let (path, request) = (&arguments.directory, &arguments.request);
+    let path = &arguments.directory;
+    let request = &FitRequest {
+        outputs: arguments.out.iter().cloned().collect(),
+        ..arguments.request.clone()
+    };
+    let out = arguments.out.as_deref();
+    let out = out.map(|path| Ok::<_, Error>((path, Form::of_path("--out", path)?)));
+    let out = out.transpose()?;
     if arguments.watch {
         message(&format!("watching {}/raw; Ctrl-C ends it", path.display()));
         watch(
@@ -45,6 +54,9 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         None => fit_any(path, request, progress),
     });
     let outcome = outcome.map_err(tell_failures)?;
+    if let Some((path, form)) = out {
+        write_any(path, form, &outcome)?;
+    }
     match arguments.format {
         Format::Json => write_result(&(outcome.json()? + "\n"))?,
         other => show(other, &outcome, text_of_any, csv_of_any)?,

@@ -32,6 +32,7 @@ pub fn run(command: &SceneCommand) -> anyhow::Result<()> {
         SceneCommand::Study(arguments) => run_variants(arguments),
         SceneCommand::Picture(arguments) => scene_view::picture(arguments),
         SceneCommand::Vtk(arguments) => scene_view::vtk(arguments),
+        SceneCommand::Table(arguments) => scene_view::table(arguments),
         SceneCommand::Export(arguments) => export(arguments),
         SceneCommand::Rank(request) => Ok(run_rank(request)?),
     }

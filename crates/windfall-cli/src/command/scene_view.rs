@@ -1,10 +1,11 @@
-//! `windfall scene picture` and `windfall scene vtk`
+//! `windfall scene picture`, `windfall scene vtk` and `windfall scene table`
 
 use crate::args::format::Format;
-use crate::args::scene_view::{ScenePictureArguments, SceneVtkArguments};
+use crate::args::scene_view::{ScenePictureArguments, SceneTableArguments, SceneVtkArguments};
 use crate::progress::with_bar;
 use crate::show::{write_json, write_names, write_result};
 use windfall_files::option_value::{positive, quantity, unusable};
+use windfall_scene_run::frames::table::table_of_scene;
 use windfall_scene_run::frames::view::{PictureRequest, draw_scene, vtk_of_scene};
 
 /// Draws a scene.
@@ -62,6 +63,21 @@ pub fn vtk(arguments: &SceneVtkArguments) -> anyhow::Result<()> {
             outcome.frames,
             outcome.files,
             outcome.collection.display()
+        )),
+    }
+}
+
+/// Writes a table for other programs.
+pub fn table(arguments: &SceneTableArguments) -> anyhow::Result<()> {
+    let (run, table, out) = (&arguments.run, arguments.table, &arguments.out);
+    let outcome = with_bar(|progress| table_of_scene(run, table, out, progress))?;
+    match arguments.format {
+        Format::Json => write_json(&outcome),
+        Format::Csv => write_names("file", &[outcome.file.display().to_string()]),
+        Format::Text => write_result(&format!(
+            "{} rows.\n\nWritten: {}\n",
+            outcome.rows,
+            outcome.file.display()
         )),
     }
 }

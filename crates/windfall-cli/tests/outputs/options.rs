@@ -82,6 +82,13 @@ pub const WRITTEN: &[Output] = &[
     ),
     (
         "fit",
+        "--out",
+        Kind::Ending(&["csv", "parquet", "arrow"]),
+        "fit campaign --out {}",
+        CAMPAIGN,
+    ),
+    (
+        "fit",
         "--card",
         Kind::File,
         "fit campaign --card {}",
@@ -340,6 +347,13 @@ pub const WRITTEN: &[Output] = &[
         RUN,
     ),
     (
+        "scene table",
+        "--out",
+        Kind::Ending(&["csv", "parquet", "arrow"]),
+        "scene table scene/scene.run frames --out {}",
+        RUN,
+    ),
+    (
         "scene export",
         "--out",
         Kind::Folder,
@@ -430,6 +444,7 @@ pub const READ: &[(&str, &str)] = &[
     ("scene study", "file"),
     ("scene picture", "run"),
     ("scene vtk", "run"),
+    ("scene table", "run"),
     ("scene export", "file"),
     ("summary", "table"),
     ("compare", "table"),

@@ -48,6 +48,7 @@ __all__ = [
     "scene_picture",
     "scene_run",
     "scene_study",
+    "scene_table",
     "scene_vtk",
     "simulate_carriage",
     "simulate_compression",
@@ -229,6 +230,7 @@ def fit_campaign(
     detail: Path | None = None,
     card: Path | None = None,
     threads: int | None = None,
+    out: Path | None = None,
     rig: Literal["pendulum", "carriage"] | None = None,
     inertia: Value | None = None,
     arm: Value | None = None,
@@ -287,6 +289,7 @@ def fit_campaign(
     * `card`: Write the law as a law card: the median fruit, how fruit differ, and in what it was
       seen
     * `threads`: Number of threads; all cores if left out. It never changes a result
+    * `out`: Write the table of results into a file, too: .csv, .parquet or .arrow
     * `rig`: The rig that the recording comes from
     * `inertia`: Pendulum: moment of inertia about the pivot, such as "0.01435 kg m^2"
     * `arm`: Pendulum: pivot to point of contact, such as "0.505 m"
@@ -335,6 +338,7 @@ def fit_campaign(
             "--detail": detail,
             "--card": card,
             "--threads": threads,
+            "--out": out,
             "--rig": rig,
             "--inertia": inertia,
             "--arm": arm,
@@ -2537,6 +2541,36 @@ def scene_vtk(
     )
 
 
+def scene_table(
+    run: Path,
+    table: Literal["events", "fruit", "frames"],
+    *,
+    out: Path,
+    force: bool = False,
+    also_read: Path | Sequence[Path] = (),
+    progress: bool = False,
+) -> Result:
+    """Write a table of a scene that has run as Parquet, Arrow or CSV.
+
+    The command `windfall scene table`.
+
+    * `run`: Directory that `windfall scene run` wrote into, or the scene file beside it
+    * `table`: Which table; frames need [record] frames in the scene
+    * `out`: File to write: .parquet, .arrow or .csv
+    """
+    return call(
+        "scene table",
+        [run, table],
+        {
+            "--out": out,
+        },
+        json=True,
+        force=force,
+        also_read=also_read,
+        progress=progress,
+    )
+
+
 def scene_export(
     file: Path,
     *,
@@ -2599,7 +2633,7 @@ def summary(
 
     The command `windfall summary`.
 
-    * `table`: Table with a header line (CSV)
+    * `table`: Table with a header line (CSV, Parquet or Arrow), or a folder of Parquet files
     * `by`: Columns that group the rows, separated by commas; all rows are one group if left out
     * `value`: Column of values; may be repeated; all columns of numbers if left out
     * `confidence`: Level of the intervals of means [default: 0.95]
@@ -2655,7 +2689,7 @@ def compare(
 
     The command `windfall compare`.
 
-    * `table`: Table with a header line (CSV)
+    * `table`: Table with a header line (CSV, Parquet or Arrow), or a folder of Parquet files
     * `value`: Column of values [default: ]
     * `by`: Columns that group the rows, separated by commas
     * `paired`: Column of specimens that were measured in every group
@@ -2742,7 +2776,7 @@ def regress(
 
     The command `windfall regress`.
 
-    * `table`: Table with a header line (CSV)
+    * `table`: Table with a header line (CSV, Parquet or Arrow), or a folder of Parquet files
     * `response`: What is modelled: a column, or a function of one
     * `terms`: What it is modelled by
     * `formula`: Both at once: 'response ~ terms'
@@ -2865,7 +2899,7 @@ def surface(
 
     The command `windfall surface`.
 
-    * `table`: Table of runs with a header line (CSV)
+    * `table`: Table of runs with a header line (CSV, Parquet or Arrow)
     * `response`: A response: a column, or a function of columns; may be repeated, each with its
       --model
     * `model`: Its model; one for all responses, or one for each in their order [default:
