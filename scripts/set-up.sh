@@ -108,6 +108,15 @@ need_node() {
     at_least "$node_found" "$node_wanted" || fail "needs Node $node_wanted, but node is $node_found"
 }
 
+# Python 3.11 or newer with venv, to test the package for Python, which needs 3.10.
+need_python() {
+    python_fits() {
+        python3 -c 'import sys, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null
+    }
+    python_fits || apt_install python3 python3-venv
+    python_fits || fail "needs Python 3.11 or newer with venv; install it and run again"
+}
+
 # A browser for the tests of the page.
 need_chromium() {
     have chromium || have chromium-browser || have google-chrome || apt_install chromium

@@ -6,7 +6,7 @@ use crate::write_file::{give_new_name, partial_of, sweep};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{PoisonError, RwLock};
 
 /// Longest name of a file that is taken; bytes. Half of what file systems take, so
 /// that it can be written beside its place first.
@@ -79,11 +79,12 @@ pub fn check_inside(directory: &Path, path: &Path) -> Result<(), Error> {
 }
 
 /// Directories that the user named, besides those where files that name others lie.
-static ALSO_READ: OnceLock<Vec<PathBuf>> = OnceLock::new();
+static ALSO_READ: RwLock<Vec<PathBuf>> = RwLock::new(Vec::new());
 
-/// From now on files below these directories may be named by a campaign, scene, study or law.
+/// From now on files below these directories, and no others, may be named by a campaign, scene,
+/// study or law.
 pub fn also_read(directories: Vec<PathBuf>) {
-    let _ = ALSO_READ.set(directories);
+    *ALSO_READ.write().unwrap_or_else(PoisonError::into_inner) = directories;
 }
 
 /// The file that another file names.
@@ -106,7 +107,7 @@ pub fn named_file(directory: &Path, name: &str, within: &Path) -> Result<PathBuf
     let Ok(found) = path.canonicalize() else {
         return Ok(path);
     };
-    let also = ALSO_READ.get().map_or(&[][..], Vec::as_slice);
+    let also = ALSO_READ.read().unwrap_or_else(PoisonError::into_inner);
     let mut within = std::iter::once(within).chain(also.iter().map(PathBuf::as_path));
     let inside = |folder: &Path| {
         let folder = match folder.as_os_str().is_empty() {

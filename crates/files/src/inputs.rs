@@ -2,14 +2,17 @@
 //!
 //! A command notes each input: [`protect`] a file, [`protect_campaign`] a campaign with the
 //! directory of its recordings. No output replaces an input, whatever it is called: files are
-//! known by device and inode, where the system has them. Only programs that run a single
-//! command turn this on ([`guard_inputs`]); a server confines its files in another way.
+//! known by device and inode, where the system has them. Programs that run commands turn this
+//! on for each of them ([`guard_inputs`]); a server confines its files in another way.
+//!
+//! Of commands that run at once each is kept from the inputs of all: which of them noted a
+//! file is not known, because their threads are shared.
 
 use crate::error::Error;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::Metadata;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use windfall_source::stream::STANDARD_INPUT;
 
 /// What a file or folder is, whatever it is called.
@@ -18,42 +21,85 @@ type Identity = (u64, u64);
 #[cfg(not(unix))]
 type Identity = PathBuf;
 
-/// Inputs of the command.
-#[derive(Default)]
+/// What was noted, and the newest command that ran then: it belongs to that one or to an
+/// older one.
+type Noted<T> = BTreeMap<Identity, (u64, T)>;
+
+/// Inputs of the commands that run.
 struct Inputs {
-    files: BTreeMap<Identity, PathBuf>,
+    /// Numbers of the commands that run, and the next number.
+    running: BTreeSet<u64>,
+    next: u64,
+    files: Noted<PathBuf>,
     /// Folders that hold recordings alone.
-    recordings: BTreeMap<Identity, PathBuf>,
+    recordings: Noted<PathBuf>,
     /// Folders with the names in them that belong to a campaign.
-    campaigns: BTreeMap<Identity, &'static [&'static str]>,
+    campaigns: Noted<&'static [&'static str]>,
 }
 
-static INPUTS: OnceLock<Mutex<Inputs>> = OnceLock::new();
+static INPUTS: Mutex<Inputs> = Mutex::new(Inputs {
+    running: BTreeSet::new(),
+    next: 0,
+    files: BTreeMap::new(),
+    recordings: BTreeMap::new(),
+    campaigns: BTreeMap::new(),
+});
+
+/// Keeps the inputs of a command as long as it runs, which is as long as this lives.
+pub struct Guarded {
+    number: u64,
+}
 
 /// From now on this program replaces none of its inputs.
-pub fn guard_inputs() {
-    INPUTS.get_or_init(Mutex::default);
+#[must_use]
+pub fn guard_inputs() -> Guarded {
+    let mut inputs = inputs();
+    let number = inputs.next;
+    inputs.next += 1;
+    inputs.running.insert(number);
+    Guarded { number }
+}
+
+impl Drop for Guarded {
+    fn drop(&mut self) {
+        let mut inputs = inputs();
+        inputs.running.remove(&self.number);
+        let oldest = inputs.running.first().copied().unwrap_or(u64::MAX);
+        inputs.files.retain(|_, (newest, _)| *newest >= oldest);
+        inputs.recordings.retain(|_, (newest, _)| *newest >= oldest);
+        inputs.campaigns.retain(|_, (newest, _)| *newest >= oldest);
+    }
+}
+
+fn inputs() -> MutexGuard<'static, Inputs> {
+    INPUTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The newest command that runs, if inputs are guarded.
+fn newest() -> Option<u64> {
+    inputs().running.last().copied()
 }
 
 /// Notes an input.
 pub fn protect(path: &Path) {
-    note(path, |inputs, identity| {
-        inputs.files.insert(identity, path.to_path_buf());
+    note(path, |inputs, identity, newest| {
+        let noted = (newest, path.to_path_buf());
+        inputs.files.insert(identity, noted);
     });
 }
 
 /// Notes a campaign: names that are its own, and the folder of its recordings, in which
 /// nothing is written at all.
 pub fn protect_campaign(directory: &Path, own: &'static [&'static str], recordings: &Path) {
-    note(directory, |inputs, identity| {
-        inputs.campaigns.insert(identity, own);
+    note(directory, |inputs, identity, newest| {
+        inputs.campaigns.insert(identity, (newest, own));
     });
     // Recordings that lie beside campaign.toml share their folder with what is written.
     let apart = match (directory.canonicalize(), recordings.canonicalize()) {
         (Ok(directory), Ok(recordings)) => !directory.starts_with(&recordings),
         _ => false,
     };
-    if apart && INPUTS.get().is_some() {
+    if apart && newest().is_some() {
         // Also those that no impact names, which other names may lead to.
         for entry in std::fs::read_dir(recordings)
             .into_iter()
@@ -62,20 +108,23 @@ pub fn protect_campaign(directory: &Path, own: &'static [&'static str], recordin
         {
             protect(&entry.path());
         }
-        note(recordings, |inputs, identity| {
-            inputs.recordings.insert(identity, recordings.to_path_buf());
+        note(recordings, |inputs, identity, newest| {
+            let noted = (newest, recordings.to_path_buf());
+            inputs.recordings.insert(identity, noted);
         });
     }
 }
 
-fn note(path: &Path, add: impl FnOnce(&mut Inputs, Identity)) {
-    if let Some(inputs) = INPUTS.get()
-        && let Some(identity) = identity_of(path)
-    {
-        add(
-            &mut inputs.lock().unwrap_or_else(PoisonError::into_inner),
-            identity,
-        );
+fn note(path: &Path, add: impl FnOnce(&mut Inputs, Identity, u64)) {
+    if newest().is_none() {
+        return;
+    }
+    let Some(identity) = identity_of(path) else {
+        return;
+    };
+    let mut inputs = inputs();
+    if let Some(newest) = inputs.running.last().copied() {
+        add(&mut inputs, identity, newest);
     }
 }
 
@@ -100,12 +149,12 @@ fn identity_of(path: &Path) -> Option<Identity> {
 /// # Errors
 /// It would.
 pub fn check_output(path: &Path) -> Result<(), Error> {
-    let Some(inputs) = INPUTS.get() else {
+    let inputs = inputs();
+    if inputs.running.is_empty() {
         return Ok(());
-    };
-    let inputs = inputs.lock().unwrap_or_else(PoisonError::into_inner);
+    }
     let replaced = identity_of(path).and_then(|own| inputs.files.get(&own));
-    if let Some(input) = replaced {
+    if let Some((_, input)) = replaced {
         return Err(Error::WouldReplaceInput {
             path: path.to_path_buf(),
             input: input.clone(),
@@ -118,7 +167,7 @@ pub fn check_output(path: &Path) -> Result<(), Error> {
     let name = path.file_name().unwrap_or_default();
     let folder = path.parent().map(named).unwrap_or_default();
     let own = identity_of(&folder).and_then(|folder| inputs.campaigns.get(&folder));
-    if own.is_some_and(|own| own.iter().any(|known| name.eq_ignore_ascii_case(known))) {
+    if own.is_some_and(|(_, own)| own.iter().any(|known| name.eq_ignore_ascii_case(known))) {
         return Err(Error::WouldReplaceInput {
             path: path.to_path_buf(),
             input: folder.join(name),
@@ -133,7 +182,7 @@ pub fn check_output(path: &Path) -> Result<(), Error> {
         .ancestors()
         .find_map(|above| inputs.recordings.get(&identity_of(above)?));
     match among {
-        Some(folder) => Err(Error::AmongRecordings {
+        Some((_, folder)) => Err(Error::AmongRecordings {
             path: path.to_path_buf(),
             folder: folder.clone(),
         }),

@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Name of the list in a folder.
 pub const LIST: &str = ".windfall-wrote";
@@ -26,9 +26,18 @@ type Lines = BTreeSet<(String, String)>;
 
 static FORCE: AtomicBool = AtomicBool::new(false);
 
-/// From now on files of others may be replaced too: the user said `--force`.
-pub fn replace_files_of_others() {
-    FORCE.store(true, Ordering::Relaxed);
+/// Whether files of others may be replaced too from now on: the user said `--force`.
+pub(crate) fn replace_files_of_others(force: bool) {
+    FORCE.store(force, Ordering::Relaxed);
+}
+
+/// Forgets the lists; they are read again where they are needed.
+pub(crate) fn forget_lists() {
+    lists().clear();
+}
+
+fn lists() -> MutexGuard<'static, BTreeMap<PathBuf, (u64, Lines)>> {
+    LISTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Refuses a file that is there and that windfall did not write, or that was changed since.
@@ -142,8 +151,10 @@ fn ends_line(list: &Path) -> bool {
 fn with_lines<T>(path: &Path, work: impl FnOnce(&mut Lines) -> T) -> T {
     let list = list_of(path);
     let length = || std::fs::metadata(&list).map_or(0, |own| own.len());
-    let mut lists = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
-    let (known, lines) = lists.entry(list.clone()).or_default();
+    // The program may go to another directory meanwhile.
+    let whole = std::path::absolute(&list).unwrap_or_else(|_| list.clone());
+    let mut lists = lists();
+    let (known, lines) = lists.entry(whole).or_default();
     if *known != length() {
         // First use, or another program wrote or removed it.
         let text = std::fs::read(&list).unwrap_or_default();

@@ -79,7 +79,7 @@ const ARROWS: &[(&str, &str)] = &[
         "cli",
         "web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
     ),
-    ("python", "windfall"),
+    ("python", "cli campaign files formats"),
     ("test-data", ""),
     ("layering", ""),
 ];

@@ -74,7 +74,8 @@ impl Source {
         Self::of_bytes(Path::new(name), bytes.into())
     }
 
-    fn of_bytes(path: &Path, bytes: Arc<[u8]>) -> Self {
+    /// [`Source::from_bytes`] of bytes that others hold too.
+    pub fn of_bytes(path: &Path, bytes: Arc<[u8]>) -> Self {
         Self {
             path: path.to_path_buf(),
             start: 0,

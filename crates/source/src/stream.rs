@@ -50,6 +50,14 @@ pub fn stream_bytes(path: &Path) -> Result<Arc<[u8]>> {
     Ok(bytes)
 }
 
+/// Forgets what the streams held: the next who reads one waits for what comes out of it then.
+pub fn forget_streams() {
+    STREAMS
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .clear();
+}
+
 #[cfg(test)]
 mod tests {
     #[cfg(unix)]
@@ -65,14 +73,21 @@ mod tests {
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();
         assert!(made.unwrap().success());
         assert!(is_stream(&pipe) && !is_stream(folder.path()));
-        let other = pipe.clone();
-        let writer = std::thread::spawn(move || {
-            let mut file = File::options().write(true).open(other).unwrap();
-            file.write_all(b"a,b\n1,2\n").unwrap();
-        });
+        let write = |text: &'static [u8]| {
+            let other = pipe.clone();
+            std::thread::spawn(move || {
+                let mut file = File::options().write(true).open(other).unwrap();
+                file.write_all(text).unwrap();
+            })
+        };
+        let writer = write(b"a,b\n1,2\n");
         assert_eq!(&stream_bytes(&pipe).unwrap()[..], b"a,b\n1,2\n");
         writer.join().unwrap();
         // Nobody writes any more.
         assert_eq!(&stream_bytes(&pipe).unwrap()[..], b"a,b\n1,2\n");
+        forget_streams();
+        let writer = write(b"a,b\n3,4\n");
+        assert_eq!(&stream_bytes(&pipe).unwrap()[..], b"a,b\n3,4\n");
+        writer.join().unwrap();
     }
 }

@@ -1,6 +1,8 @@
-//! Where text goes: results to standard output, messages to standard error.
+//! Where text goes: results to standard output, messages to standard error, both to a program
+//! that called.
 
 use crate::args::format::Format;
+use crate::caller::take_down;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use windfall_files::error::Error;
@@ -10,6 +12,9 @@ use windfall_files::text::quote::{command, path_word};
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
+    if take_down(text, |said| &mut said.result) {
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
@@ -54,6 +59,9 @@ pub fn show_motion(
 
 /// Writes a line to standard error, if it is open.
 pub fn message(text: &str) {
+    if take_down(&format!("{text}\n"), |said| &mut said.messages) {
+        return;
+    }
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 

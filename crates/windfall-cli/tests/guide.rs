@@ -16,8 +16,9 @@ use page::{Page, code_spans, links, page, pages, source};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Pages that need no command: an introduction and tables to look things up in.
-const WITHOUT_COMMANDS: [&str; 3] = ["introduction.md", "engines.md", "browser.md"];
+/// Pages that need no command: an introduction, tables to look things up in, and Python, which
+/// has tests of its own (`scripts/test-python`).
+const WITHOUT_COMMANDS: [&str; 4] = ["introduction.md", "engines.md", "browser.md", "python.md"];
 
 /// Pages about comparisons and about how windfall is made: their commands need other
 /// programs, data or hours, and are not run; that they exist is checked.
@@ -110,7 +111,7 @@ fn rejects_commands_that_nobody_runs() {
             let place = format!("{}, line {}", page.name, block.line);
             let kind = block.kind();
             // "sh" are commands from before windfall is there: building it.
-            let kinds = ["console", "toml", "csv", "text", "sh"];
+            let kinds = ["console", "toml", "csv", "text", "sh", "python"];
             assert!(kinds.contains(&kind), "{place}: a block of kind {kind:?}");
             if kind == "console" {
                 continue;

@@ -19,6 +19,7 @@ use windfall_identify::fit::detail::{FitDetail, FittedSeries, fit_in_detail};
 use windfall_identify::fit::interval::{IntervalDetail, Posterior};
 use windfall_identify::fit::result::Estimate;
 use windfall_identify::rig::kind::Rig;
+use windfall_signal::impact::Impact;
 
 /// Version of the layout: raised when a key changes its meaning or goes.
 const LAYOUT: u32 = 1;
@@ -46,17 +47,31 @@ pub(crate) fn write_details(
         }
         let (impact, _) = extract_recording(campaign, entry, Some(rig.effective_mass()))?;
         laws.into_iter().try_for_each(|law| {
+            let detail = detail_of_law((campaign, rig), entry, &impact, law)?;
+            let text = format!("{detail}\n");
             let name = law.kind.name();
-            let problem = law_problem(law, &campaign.fit);
-            let options = options_of(campaign, entry);
-            let detail = fit_in_detail(&impact, rig, &problem, &options)
-                .map_err(|source| Error::identify(name, source))?;
-            let mut text = document(entry, name, &detail).to_string();
-            text.push('\n');
             let file = format!("{}.json", file_name(&format!("{}-{name}", entry.id)));
             write_whole(&folder.join(file), text.as_bytes())
         })
     })
+}
+
+/// Samples, residuals, weights, covariance and draws of one fit.
+///
+/// # Errors
+/// The law cannot be fitted.
+pub(crate) fn detail_of_law(
+    (campaign, rig): (&ImpactCampaign, &Rig),
+    entry: &ImpactEntry,
+    impact: &Impact,
+    law: &LawExpression,
+) -> Result<Value, Error> {
+    let name = law.kind.name();
+    let problem = law_problem(law, &campaign.fit);
+    let options = options_of(campaign, entry);
+    let detail = fit_in_detail(impact, rig, &problem, &options)
+        .map_err(|source| Error::identify(name, source))?;
+    Ok(document(entry, name, &detail))
 }
 
 /// Variables of a group and the dimensions of all.

@@ -2,7 +2,7 @@
 
 use crate::impacts::bench::{estimate_bench, find_rig};
 use crate::impacts::card::card_of_fit;
-use crate::impacts::detail::write_details;
+use crate::impacts::detail::{detail_of_law, write_details};
 use crate::impacts::figure_impact::figure_of_impact;
 use crate::impacts::fit::Fits;
 use crate::impacts::mass::RigFound;
@@ -12,7 +12,7 @@ use crate::pipeline::request::{FitRequest, Reuse, apply_request};
 use crate::recording::digests::Digests;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
-use crate::recording::request::{RecordingRequest, campaign_of_file};
+use crate::recording::request::{RecordingRequest, campaign_of_bytes, campaign_of_file};
 use crate::result::bench::{bench_findings, far_estimates, pooled_bench};
 use crate::result::counted::mark_left_out;
 use crate::result::given::given_findings;
@@ -26,7 +26,9 @@ use crate::settings::kind::CAMPAIGN_FILE;
 use crate::settings::model::{BenchFound, Campaign, ImpactCampaign, ImpactEntry};
 use crate::settings::read::read_campaign;
 use rayon::prelude::*;
+use serde_json::Value;
 use std::path::Path;
+use std::sync::Arc;
 use windfall_cards::law_use::{LawUse, findings_of_use};
 use windfall_cards::read_card::write_card;
 use windfall_contact::expression::typical;
@@ -103,6 +105,61 @@ pub fn fit_recording(
     apply_request(&mut campaign, request)?;
     let fitted = on_threads(request.threads, || fit(campaign, None, request, progress))?;
     Ok(fitted.outcome)
+}
+
+/// A fitted recording in memory.
+pub struct FittedRecording {
+    fitted: FittedCampaign,
+}
+
+impl FittedRecording {
+    /// Its results.
+    pub fn outcome(&self) -> &CampaignOutcome {
+        &self.fitted.outcome
+    }
+
+    /// Samples, residuals, weights, covariance and draws of the fit of a law, as
+    /// `--detail` writes them. The impact is fitted once more, with the same bits.
+    ///
+    /// * `law`: its name
+    ///
+    /// # Errors
+    /// The law was not fitted.
+    pub fn detail(&self, law: &str) -> Result<Value, Error> {
+        let FittedCampaign { campaign, rig, .. } = &self.fitted;
+        let laws = || campaign.fit.laws.iter();
+        let entry = campaign.shared.entries.first();
+        let found = laws().find(|own| own.kind.name() == law).zip(entry);
+        let (law, entry) = found.ok_or_else(|| {
+            let names: Vec<&str> = laws().map(|own| own.kind.name()).collect();
+            unusable(law, format!("fitted were {}", names.join(", ")))
+        })?;
+        let (impact, _) = extract_recording(campaign, entry, Some(rig.rig.effective_mass()))?;
+        detail_of_law((campaign, &rig.rig), entry, &impact, law)
+    }
+}
+
+/// [`fit_recording`] of a recording in memory, with what its details rest on.
+///
+/// * `name`: what it is called in messages and results; the seed of intervals depends on it
+/// * `held`: the bytes that its file would have
+///
+/// It works on the threads of the caller, who may fit many recordings on them: a pool of
+/// threads within another one would take up further recordings while it waits for the first,
+/// one inside of the other.
+///
+/// # Errors
+/// Those of [`fit_recording`].
+pub fn fit_bytes(
+    (name, held): (&Path, Arc<[u8]>),
+    recording: &RecordingRequest,
+    request: &FitRequest,
+    progress: Progress,
+) -> Result<FittedRecording, Error> {
+    let mut campaign = campaign_of_bytes(name, held, recording)?;
+    apply_request(&mut campaign, request)?;
+    let fitted = fit(campaign, None, request, progress)?;
+    Ok(FittedRecording { fitted })
 }
 
 /// The campaign around a recording, with the impacts of that recording only.

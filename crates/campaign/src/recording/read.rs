@@ -6,14 +6,16 @@ use crate::settings::files::fill_placeholders;
 use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, TimePlan};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use windfall_files::confined::named_file;
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::protect;
 use windfall_files::text::column_role::seconds_per_unit;
 use windfall_formats::contents::{Contents, Note, TimeBase};
-use windfall_formats::open::open;
+use windfall_formats::open::{open, open_source};
 use windfall_formats::reader::is_missing;
 use windfall_signal::recording::{Channel, Missing, Quantity, Recording, Times};
+use windfall_source::source::Source as Bytes;
 
 /// Where the recording of an impact is.
 pub fn recording_path(files: &FilePlan, impact: &ImpactEntry) -> PathBuf {
@@ -83,8 +85,14 @@ pub fn read_recording(files: &FilePlan, impact: &ImpactEntry) -> Result<Recordin
 /// or nothing says when samples were taken.
 pub fn read_with_gaps(files: &FilePlan, impact: &ImpactEntry) -> Result<Recording, Error> {
     let path = recording_file(files, impact)?;
-    protect(&path);
-    let mut reader = open(&path, &files.open).map_err(Error::Format)?;
+    let reader = match &files.held {
+        Some(held) => open_source(Bytes::of_bytes(&path, Arc::clone(held)), &files.open),
+        None => {
+            protect(&path);
+            open(&path, &files.open)
+        }
+    };
+    let mut reader = reader.map_err(Error::Format)?;
     let contents = reader.contents().clone();
     let sources = files
         .channels

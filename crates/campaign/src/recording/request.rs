@@ -8,6 +8,7 @@ use crate::settings::model::{
 };
 use crate::settings::rig::{FROM_IMPULSE, STANDARD_GRAVITY};
 use std::path::Path;
+use std::sync::Arc;
 use windfall_files::error::Error;
 use windfall_files::inputs::check_piped;
 use windfall_files::option_value::{at_least_zero, chosen, positive, quantity, unusable};
@@ -110,6 +111,29 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Impac
             advice: advice.to_owned(),
         });
     }
+    campaign_of(file, None, request)
+}
+
+/// [`campaign_of_file`] of a recording in memory.
+///
+/// * `name`: what it is called in messages and results
+/// * `held`: the bytes that its file would have
+///
+/// # Errors
+/// An option is missing or cannot be used.
+pub fn campaign_of_bytes(
+    name: &Path,
+    held: Arc<[u8]>,
+    request: &RecordingRequest,
+) -> Result<ImpactCampaign, Error> {
+    campaign_of(name, Some(held), request)
+}
+
+fn campaign_of(
+    file: &Path,
+    held: Option<Arc<[u8]>>,
+    request: &RecordingRequest,
+) -> Result<ImpactCampaign, Error> {
     let rig = rig_plan(request)?;
     let (time, time_scale) = time_plan(request)?;
     let channels = request.channels.iter().map(|text| channel_plan(text));
@@ -120,6 +144,7 @@ pub fn campaign_of_file(file: &Path, request: &RecordingRequest) -> Result<Impac
     let files = FilePlan {
         directory: directory.clone(),
         within: None,
+        held,
         open: OpenOptions::default(),
         time,
         time_scale,

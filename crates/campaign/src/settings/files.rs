@@ -68,6 +68,7 @@ pub fn file_plan(
     Ok(FilePlan {
         directory: recordings,
         within: Some(within),
+        held: None,
         open: open_plan(source, files)?,
         time: match channels.iter().all(|channel| channel.time.is_some()) {
             true => TimePlan::OfChannels,

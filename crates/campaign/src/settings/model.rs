@@ -3,6 +3,7 @@
 use crate::settings::kind::CampaignKind;
 use serde::Serialize;
 use std::path::PathBuf;
+use std::sync::Arc;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::found::FindingOutcome;
@@ -133,6 +134,8 @@ pub struct FilePlan {
     /// Where recordings must lie, behind any links; anywhere, where the user named the
     /// recording itself.
     pub within: Option<PathBuf>,
+    /// The bytes of the recording where it is in memory and its file is only a name.
+    pub held: Option<Arc<[u8]>>,
     /// How files are read that do not say it themselves.
     pub open: OpenOptions,
     /// How samples are timed where a channel does not say otherwise.

@@ -107,6 +107,17 @@ pub enum Command {
     },
 }
 
+impl Command {
+    /// Whether it lasts until it is interrupted.
+    pub fn is_endless(&self) -> bool {
+        match self {
+            Self::Serve(_) => true,
+            Self::Fit(own) => own.watch,
+            _ => false,
+        }
+    }
+}
+
 /// `windfall new`
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:

@@ -1,7 +1,7 @@
 //! `windfall calibrate`
 
 use crate::args::calibrate::CalibrateArguments;
-use crate::command::fit::with_bar;
+use crate::progress::with_bar;
 use crate::show::{show, tell_failures, tell_unused};
 use windfall_drop::calibrate::run::calibrate;
 use windfall_drop::calibrate::text::{csv_of_calibration, text_of_calibration};

@@ -2,14 +2,12 @@
 
 use crate::args::fit::FitArguments;
 use crate::args::format::Format;
+use crate::progress::with_bar;
 use crate::show::{message, show, tell_failures, write_result};
-use indicatif::{ProgressBar, ProgressStyle};
-use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_files::error::Error;
-use windfall_files::progress::Progress;
 use windfall_files::sheet::form::Form;
 use windfall_inspect::gather::text::text_of_watched;
 use windfall_inspect::gather::watch::watch;
@@ -101,23 +99,4 @@ fn status_line(status: &windfall_campaign::result::outcome::StatusOutcome) -> St
         "{} fitted, {} unchanged from results.sqlite{failed}",
         status.fitted, status.stored
     )
-}
-
-/// Does work under a progress bar on a terminal; Ctrl-C interrupts the program.
-pub(crate) fn with_bar<T>(work: impl FnOnce(Progress) -> T) -> T {
-    let mut bar = ProgressBar::hidden();
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} recordings, {eta} left");
-    if std::io::stderr().is_terminal() {
-        bar = ProgressBar::new(0);
-        if let Ok(style) = style {
-            bar.set_style(style);
-        }
-    }
-    let done = work(&|done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-        ControlFlow::Continue(())
-    });
-    bar.finish_and_clear();
-    done
 }

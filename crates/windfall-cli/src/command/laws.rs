@@ -1,7 +1,7 @@
 //! `windfall laws`
 
 use crate::args::laws::LawsArguments;
-use crate::command::fit::with_bar;
+use crate::progress::with_bar;
 use crate::show::{show, tell_unused};
 use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_population::ranking::run::rank_campaign;

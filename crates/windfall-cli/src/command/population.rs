@@ -2,7 +2,7 @@
 
 use crate::args::format::Format;
 use crate::args::population::PopulationArguments;
-use crate::command::fit::with_bar;
+use crate::progress::with_bar;
 use crate::show::{message, tell_failures, write_json, write_result};
 use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_cards::read_card::write_card;

@@ -2,7 +2,7 @@
 
 use crate::args::format::Format;
 use crate::args::report::ReportArguments;
-use crate::command::fit::with_bar;
+use crate::progress::with_bar;
 use crate::show::{tell_failures, write_json, write_names, write_result};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_report::run::{ReportRequest, report_campaign};

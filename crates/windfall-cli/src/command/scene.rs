@@ -4,10 +4,13 @@ use crate::args::format::Format;
 use crate::args::scene::{
     ExportName, SceneCommand, SceneExportArguments, SceneRunArguments, SceneStudyArguments,
 };
-use crate::command::fit::with_bar;
+use crate::caller::watch;
 use crate::command::scene_view;
+use crate::progress::with_bar;
 use crate::show::{show, write_json, write_result};
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use windfall_engines::contacts::export_contacts;
 use windfall_engines::parameters::Other;
@@ -78,10 +81,14 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         ..arguments.request.clone()
     };
     let engine = EngineRequest {
-        windfall: std::env::current_exe().ok(),
+        windfall: command(),
         ..arguments.engine.clone()
     };
-    let interrupted = interruption();
+    // A program that called has signals of its own, and says when to stop.
+    let interrupted = match watch().is_some() {
+        true => Arc::default(),
+        false => interruption(),
+    };
     let outcome = with_bar(|shown| {
         let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
@@ -90,6 +97,14 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         run_on_engine(&arguments.file, &request, &engine, &progress)
     })?;
     show(arguments.format, &outcome, text_of_scene, csv_of_scene)
+}
+
+/// The command itself, which ranks start: this program, or the script that an interpreter runs.
+fn command() -> Option<PathBuf> {
+    let words = std::env::args_os().take(2).map(PathBuf::from);
+    let mut programs = std::env::current_exe().ok().into_iter().chain(words);
+    let is_windfall = |path: &Path| path.file_stem().is_some_and(|stem| stem == "windfall");
+    programs.find(|path| is_windfall(path) && path.is_file())
 }
 
 fn run_variants(arguments: &SceneStudyArguments) -> anyhow::Result<()> {

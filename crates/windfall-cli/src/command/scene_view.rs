@@ -2,7 +2,7 @@
 
 use crate::args::format::Format;
 use crate::args::scene_view::{ScenePictureArguments, SceneTableArguments, SceneVtkArguments};
-use crate::command::fit::with_bar;
+use crate::progress::with_bar;
 use crate::show::{write_json, write_names, write_result};
 use windfall_files::option_value::{positive, quantity, unusable};
 use windfall_scene_run::frames::table::table_of_scene;

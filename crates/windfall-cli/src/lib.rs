@@ -1,0 +1,207 @@
+//! The `windfall` command: parses arguments, calls one workflow, displays.
+//!
+//! Results go to standard output, messages and progress to standard error.
+//! Exit status: 0 success, 1 the work failed, 2 the request was wrong.
+//!
+//! [`main`] is the program. [`call`] runs a command in the process of another program, which
+//! hears what the command would have printed:
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use std::sync::Arc;
+//!
+//! let words = ["radius", "--diameters", "70 mm,68 mm,72 mm", "--format", "json"];
+//! let answer = windfall_cli::call(words, Arc::new(|_, _| ControlFlow::Continue(())));
+//! assert_eq!(answer.status, 0);
+//! assert!(answer.said.result.contains("mean_radius"));
+//! ```
+
+mod args;
+mod caller;
+mod command;
+mod progress;
+mod show;
+
+pub use crate::caller::{Said, Watch};
+
+use args::common::{Arguments, Command};
+use args::groups::grouped;
+use clap::{CommandFactory, FromArgMatches};
+use std::ffi::OsString;
+use windfall_files::allowed::{Allowed, allow};
+use windfall_files::inputs::guard_inputs;
+
+/// The program: does what its command line says, and prints.
+///
+/// * `words`: the command line, beginning with the name of the program
+///
+/// Help and errors of the command line end the process.
+pub fn main(words: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
+    let parsed = parse(words.into_iter().map(Into::into));
+    run(parsed.unwrap_or_else(|error| error.exit()))
+}
+
+/// What a command that another program called has said, and how it ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// What it would have printed.
+    pub said: Said,
+    /// Exit status: 0 success, 1 the work failed, 2 the request was wrong.
+    pub status: u8,
+}
+
+/// Runs a command of windfall in this process; nothing is printed.
+///
+/// * `words`: what would stand on the command line after `windfall`
+/// * `watch`: is told of progress by the commands that show it, and may stop them
+///
+/// Calls may be made from several threads at once. What one of them allows (`--force`,
+/// `--also-read`) holds for it alone: such a call waits for the others, and they for it.
+/// Commands that last until they are interrupted are refused.
+pub fn call(words: impl IntoIterator<Item = impl Into<OsString>>, watch: Watch) -> Answer {
+    let words = words.into_iter().map(Into::into);
+    let words = std::iter::once(OsString::from("windfall")).chain(words);
+    let (status, said) = caller::called(watch, || match parse(words) {
+        Ok(arguments) if arguments.command.is_endless() => {
+            show::message("error: this lasts until it is interrupted; run it in a terminal");
+            2
+        }
+        Ok(arguments) => run(arguments),
+        Err(error) => show_parser(&error),
+    });
+    Answer { said, status }
+}
+
+/// The commands with their arguments and their help.
+pub fn commands() -> clap::Command {
+    Arguments::command()
+}
+
+fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
+    let matches = grouped(Arguments::command()).try_get_matches_from(words)?;
+    Arguments::from_arg_matches(&matches)
+}
+
+/// Shows help, or what is wrong with a command line.
+fn show_parser(error: &clap::Error) -> u8 {
+    let text = error.render().to_string();
+    if error.use_stderr() {
+        show::message(text.trim_end());
+        return 2;
+    }
+    u8::from(show::write_result(&text).is_err())
+}
+
+/// Runs a command, and shows what it returns or why it failed; the exit status.
+fn run(arguments: Arguments) -> u8 {
+    let _allowance = allow(Allowed {
+        force: arguments.force,
+        also_read: arguments.also_read,
+    });
+    // A server confines what it writes to its workspace.
+    let serves = matches!(arguments.command, Command::Serve(_));
+    let _guarded = (!serves).then(guard_inputs);
+    match run_command(arguments.command) {
+        Ok(()) => 0,
+        Err(error) => {
+            show::message(&format!("error: {}", show::with_causes(&error)));
+            status_of(&error)
+        }
+    }
+}
+
+fn run_command(command: Command) -> anyhow::Result<()> {
+    match command {
+        Command::New(arguments) => command::new::run(&arguments),
+        Command::Add(arguments) => command::add::run(&arguments),
+        Command::Inspect(arguments) => command::inspect::run(&arguments),
+        Command::Design(arguments) => command::design::run(&arguments),
+        Command::Fit(arguments) => command::fit::run(&arguments),
+        Command::Laws(arguments) => command::laws::run(&arguments),
+        Command::Plan(arguments) => command::plan::run(&arguments),
+        Command::Population(arguments) => command::population::run(&arguments),
+        Command::Report(arguments) => command::report::run(&arguments),
+        Command::Serve(arguments) => command::serve::run(&arguments),
+        Command::Calibrate(arguments) => command::calibrate::run(&arguments),
+        Command::Scene(command) => command::scene::run(&command),
+        Command::Simulate(arguments) => command::simulate::run(&arguments),
+        Command::Summary(arguments) => command::compare::run_summary(&arguments),
+        Command::Compare(arguments) => command::compare::run_compare(&arguments),
+        Command::Regress(arguments) => command::regress::run(&arguments),
+        Command::Surface(arguments) => command::surface::run(&arguments),
+        Command::Radius(arguments) => command::geometry::run_radius(&arguments),
+        Command::Bounces(arguments) => command::bounces::run(&arguments),
+        Command::Bruise(arguments) => command::bruise::run(&arguments),
+        Command::Explain(arguments) => command::explain::run(&arguments),
+        Command::Card(arguments) => command::card::run(&arguments),
+        Command::Completions { shell } => {
+            let mut command = Arguments::command();
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut command, "windfall", &mut text);
+            show::write_result(&String::from_utf8_lossy(&text))
+        }
+    }
+}
+
+/// 1 when the work failed, 2 when the request was wrong.
+fn status_of(error: &anyhow::Error) -> u8 {
+    match error.downcast_ref::<windfall_files::error::Error>() {
+        Some(known) if known.is_request() => 2,
+        _ => 1,
+    }
+}
+
+#[cfg(test)]
+#[path = "../tests/outputs/options.rs"]
+#[allow(dead_code)]
+mod options;
+
+#[cfg(test)]
+#[path = "../tests/called.rs"]
+#[allow(clippy::unwrap_used)]
+mod called;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::{READ, WRITTEN};
+    use clap::ValueHint;
+    use std::any::TypeId;
+    use std::collections::BTreeSet;
+    use std::path::PathBuf;
+
+    /// Arguments of a command, and of those below it, that are paths.
+    fn paths(command: &clap::Command, name: &str, found: &mut BTreeSet<(String, String)>) {
+        for own in command.get_arguments() {
+            let path = own.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+            let hints = [ValueHint::FilePath, ValueHint::DirPath, ValueHint::AnyPath];
+            if path || hints.contains(&own.get_value_hint()) {
+                let long = own.get_long().map(|long| format!("--{long}"));
+                let long = long.unwrap_or_else(|| own.get_id().to_string());
+                assert!(found.insert((name.to_owned(), long)));
+            }
+        }
+        for own in command.get_subcommands() {
+            let name = format!("{name} {}", own.get_name());
+            paths(own, name.trim(), found);
+        }
+    }
+
+    /// An output option that the generated tests of outputs do not know fails here.
+    #[test]
+    fn reference_every_path_is_known_as_written_or_read() {
+        let mut found = BTreeSet::new();
+        paths(&Arguments::command(), "", &mut found);
+        let written = WRITTEN.iter().map(|own| (own.0, own.1));
+        let known = written.chain(READ.iter().copied());
+        let known = known.map(|(command, option)| (command.to_owned(), option.to_owned()));
+        let known: BTreeSet<_> = known.collect();
+        assert_eq!(known.len(), WRITTEN.len() + READ.len());
+        let new: Vec<_> = found.difference(&known).collect();
+        let gone: Vec<_> = known.difference(&found).collect();
+        assert!(
+            new.is_empty() && gone.is_empty(),
+            "tests/outputs/options.rs lacks {new:?}, and has too many {gone:?}"
+        );
+    }
+}

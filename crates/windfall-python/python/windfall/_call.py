@@ -1,0 +1,141 @@
+"""From the arguments of a function to the words of a command, and from what it says to a result."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from tempfile import TemporaryDirectory
+from typing import Any, Protocol, Union
+
+from windfall import _native
+from windfall._errors import WindfallError
+from windfall._progress import bar
+from windfall._result import Result
+
+
+class ToCsv(Protocol):
+    """A data frame of pandas."""
+
+    def to_csv(self, path: Any, /, *, index: bool) -> Any: ...
+
+
+class WriteCsv(Protocol):
+    """A data frame of polars."""
+
+    def write_csv(self, file: Any, /) -> Any: ...
+
+
+Path = Union[str, "os.PathLike[str]"]
+"""A file or a directory."""
+Table = Union[Path, ToCsv, WriteCsv]
+"""A file with a table, or a data frame of pandas (without its index) or polars."""
+Value = Union[str, int, float]
+"""A value as on the command line: text with a unit, a name, a number."""
+
+
+def call(
+    command: str,
+    places: Sequence[Any],
+    options: Mapping[str, Any],
+    *,
+    json: bool,
+    force: bool,
+    also_read: Path | Sequence[Path],
+    progress: bool,
+) -> Result:
+    """Runs a command.
+
+    * `places`: arguments without names, in order; `None` is left out
+    * `options`: arguments with the names that they have on the command line
+    * `json`: whether the command can answer as JSON
+
+    `ValueError`: the request was wrong. `WindfallError`: the work failed.
+    """
+    with Words() as words:
+        given = command.split()
+        for option, value in options.items():
+            given += words.of_option(option, value)
+        given += words.of_option("--also-read", also_read)
+        given += ["--format=json"] * json + ["--force"] * force + ["--"]
+        for place in places:
+            given += words.of_values(place)
+        with bar(progress) as tell:
+            text, messages, status = _native.call(given, tell)
+        messages = words.without_files(messages)
+    return outcome(text, messages, status)
+
+
+def outcome(text: str, messages: str, status: int) -> Result:
+    """The result of a command, or what it said was wrong."""
+    if status == 0:
+        return Result.from_json(text, tuple(messages.splitlines()))
+    # Of several the last one is that of the command itself.
+    *_, last = re.finditer("^error: ", messages, re.MULTILINE)
+    told = tuple(messages[: last.start()].splitlines())
+    error = messages[last.end() :]
+    if status == 2:
+        raise ValueError("\n".join([error.rstrip(), *told]))
+    result = Result.from_json(text, told) if text else None
+    raise WindfallError("\n".join([error.rstrip(), *told]), result, told)
+
+
+class Words:
+    """Words of a command line, and the files of data frames that they name."""
+
+    def __init__(self) -> None:
+        self._folder: TemporaryDirectory[str] | None = None
+        self._files: list[str] = []
+
+    def __enter__(self) -> Words:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._folder is not None:
+            self._folder.cleanup()
+
+    def of_option(self, option: str, value: Any) -> Iterator[str]:
+        """An option once for each of its values."""
+        if value is None or value is False:
+            return
+        if value is True:
+            yield option
+            return
+        for word in self.of_values(value):
+            yield f"{option}={word}"
+
+    def of_values(self, value: Any) -> Iterator[str]:
+        """A value, or each of several."""
+        if value is None:
+            return
+        several = isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+        for one in value if several else [value]:
+            yield self._word(one)
+
+    def _word(self, value: Any) -> str:
+        if hasattr(value, "to_csv"):
+            path = self._path()
+            value.to_csv(path, index=False)
+            return path
+        if hasattr(value, "write_csv"):
+            path = self._path()
+            value.write_csv(path)
+            return path
+        if isinstance(value, os.PathLike):
+            return os.fsdecode(value)
+        if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+            kind = type(value).__name__
+            raise TypeError(f"{value!r}: expected text, a number, a path or a table, found {kind}")
+        return str(value)
+
+    def _path(self) -> str:
+        if self._folder is None:
+            self._folder = TemporaryDirectory(prefix="windfall-")
+        self._files.append(os.path.join(self._folder.name, f"{len(self._files)}.csv"))
+        return self._files[-1]
+
+    def without_files(self, text: str) -> str:
+        """Messages that do not name the files of data frames."""
+        for file in self._files:
+            text = text.replace(file, "the data frame")
+        return text

@@ -1,0 +1,282 @@
+"""Fits of arrays."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from windfall import _native
+from windfall._call import Value, Words
+from windfall._errors import WindfallError
+from windfall._progress import bar
+from windfall._result import Result, table_html
+from windfall._samples import CHANNELS, npy_of, si_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+Quantity = Union[str, float, Any]
+"""Text with a unit, a number in SI, or a quantity of pint."""
+
+
+@dataclass(frozen=True)
+class Pendulum:
+    """An arm that strikes the fruit.
+
+    * `inertia`: moment of inertia about the pivot; kg m²
+    * `arm`: pivot to point of contact; m
+    * `mass`: of arm and impactor; kg
+    * `centre_of_mass`: pivot to centre of mass; m
+    * `gravity`: acceleration of gravity; m/s², 9.80665 if left out
+    """
+
+    inertia: Quantity
+    arm: Quantity
+    mass: Quantity
+    centre_of_mass: Quantity
+    gravity: Quantity | None = None
+
+
+@dataclass(frozen=True)
+class Carriage:
+    """A body on a line: a cart on an incline, a drop hammer.
+
+    * `mass`: of the body; kg, or "from impulse"
+    * `driving_acceleration`: towards the fruit when nothing touches; m/s², 0 if left out
+    """
+
+    mass: Quantity
+    driving_acceleration: Quantity | None = None
+
+
+Rig = Union[Pendulum, Carriage]
+
+_UNITS = {
+    "inertia": ("kg m^2", "[mass] * [length] ** 2"),
+    "arm": ("m", "[length]"),
+    "mass": ("kg", "[mass]"),
+    "centre_of_mass": ("m", "[length]"),
+    "gravity": ("m/s^2", "[length] / [time] ** 2"),
+    "driving_acceleration": ("m/s^2", "[length] / [time] ** 2"),
+}
+
+
+class Fit:
+    """A law, fitted to one impact.
+
+    * `law`: its name
+    * `params`: its parameters by name, each with `value`, `sd`, `low`, `high`, `unit`
+    * `nuisances`: initial velocity, onset and offset, as far as they were estimated
+    * `derived`: velocities, energies, peaks
+    * `findings`: what a reader must know
+    * `result`: all that the command says of an impact
+    """
+
+    def __init__(self, impact: Result, native: _native.Fitted) -> None:
+        self.result = impact
+        self.id: str = impact.id
+        self.law: str = impact.law
+        self.params: Result = impact.parameters
+        self.nuisances: Result = impact.nuisances
+        self.derived: Result = impact.derived
+        self.findings: tuple[Result, ...] = impact["findings"]
+        self._native = native
+        self._detail: dict[str, Any] | None = None
+
+    @property
+    def detail(self) -> dict[str, Any]:
+        """Samples, residuals, weights, covariance and draws, in groups for `arviz.from_dict`.
+
+        They are found by fitting once more, when they are first asked for.
+        """
+        if self._detail is None:
+            self._detail = json.loads(self._native.detail(self.law))
+        return self._detail
+
+    @property
+    def estimates(self) -> tuple[str, ...]:
+        """Names of what was estimated, in the order of `cov`."""
+        return tuple(self.detail["coords"]["parameter"])
+
+    @property
+    def cov(self) -> NDArray[np.float64]:
+        """Covariance of the estimates."""
+        return np.array(self.detail["constant_data"]["covariance"], dtype=np.float64)
+
+    @property
+    def residuals(self) -> dict[str, NDArray[np.float64]]:
+        """Predicted − measured of each quantity in the cost function."""
+        return {name: self._series(name, "residual") for name in self.detail["observed_data"]}
+
+    def _series(self, quantity: str, what: str) -> NDArray[np.float64]:
+        return np.array(self.detail["constant_data"][f"{quantity}_{what}"], dtype=np.float64)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws samples and the fitted law with matplotlib, a panel for each quantity."""
+        measured = self.detail["observed_data"]
+        if axes is None:
+            pyplot: Any = import_module("matplotlib.pyplot")
+            _, axes = pyplot.subplots(len(measured), 1, sharex=True, squeeze=False)
+        panels = np.ravel(axes)
+        for panel, (name, samples) in zip(panels, measured.items()):
+            time = self.detail["coords"][f"{name}_time"]
+            panel.plot(time, samples, ".", markersize=3, label="measured")
+            panel.plot(time, self._series(name, "predicted"), label=self.law)
+            panel.set_ylabel(f"{name} / SI")
+        panels[0].legend()
+        panels[-1].set_xlabel("time / s")
+        return axes
+
+    def __repr__(self) -> str:
+        values = ", ".join(
+            f"{name}={self.params[name].value:.6g} {self.params[name].unit}"
+            for name in self.params.keys()
+        )
+        return f"Fit({self.law}: {values})"
+
+    def _repr_html_(self) -> str:
+        rows = [{"parameter": name, **self.params[name].to_dict()} for name in self.params.keys()]
+        return table_html(rows)
+
+
+class Fits(Sequence[Fit]):
+    """Fits of several recordings: in their order, and of each in the order of the laws.
+
+    * `failed`: what could not be fitted, with `id`, `law` and `message`
+    """
+
+    def __init__(self, fits: Sequence[Fit], failed: Sequence[Result]) -> None:
+        self._fits = tuple(fits)
+        self.failed = tuple(failed)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._fits[place]
+
+    def __len__(self) -> int:
+        return len(self._fits)
+
+    def __iter__(self) -> Iterator[Fit]:
+        return iter(self._fits)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """A row for each parameter of each fit, as for a data frame."""
+        return [
+            {"id": fit.id, "law": fit.law, "parameter": name, **fit.params[name].to_dict()}
+            for fit in self
+            for name in fit.params.keys()
+        ]
+
+    def _repr_html_(self) -> str:
+        return table_html(self.rows())
+
+
+def fit(
+    t: ArrayLike,
+    x: ArrayLike | None = None,
+    v: ArrayLike | None = None,
+    a: ArrayLike | None = None,
+    force: ArrayLike | None = None,
+    *,
+    rig: Rig,
+    law: str,
+    name: str = "recording",
+    **options: Value | bool | Sequence[Value] | None,
+) -> Fit:
+    """Fits a law to an impact in arrays, as `windfall fit FILE --rig …` does to one in a file.
+
+    * `t`: times; s
+    * `x`, `v`, `a`: position, velocity and acceleration of the impactor; m, m/s, m/s²
+    * `force`: contact force; N
+    * `rig`: what struck the fruit
+    * `law`: such as "kuwabara-kono" or "power-law(n=1.5)"
+    * `name`: what the recording is called; the draws of bootstrap and posterior depend on it
+    * `options`: `intervals`, `free`, `prior`, `bounds`, `weights`, `noise`, `onset`, `end`,
+      `threshold`, … as of `fit_campaign`
+
+    Arrays are in SI, or know their unit as those of pint do. Gaps have to be left out.
+    """
+    arrays = {"t": t, "x": x, "v": v, "a": a, "force": force}
+    found, failed = _fitted([(name, arrays)], rig, [law], False, options)
+    if failed:
+        raise WindfallError(failed[0].message, failed[0])
+    return found[0]
+
+
+def fit_many(
+    recordings: Sequence[Mapping[str, Any]],
+    *,
+    rig: Rig,
+    law: str | Sequence[str],
+    names: Sequence[str] | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+    **options: Value | bool | Sequence[Value] | None,
+) -> Fits:
+    """Fits laws to many impacts at once; the numbers are those of `fit`.
+
+    * `recordings`: the arrays of each: `{"t": …, "x": …, "force": …}`
+    * `law`: one law, or several
+    * `names`: what the recordings are called; "1", "2", … if left out
+    * `threads`: all cores if left out
+
+    A recording that cannot be used does not stop the others: it is in `failed`.
+    """
+    called = names if names is not None else [str(n + 1) for n in range(len(recordings))]
+    if len(called) != len(recordings):
+        raise ValueError(f"names: there are {len(called)}, and {len(recordings)} recordings")
+    laws = [law] if isinstance(law, str) else list(law)
+    options = {**options, "threads": threads}
+    return Fits(*_fitted(list(zip(called, recordings)), rig, laws, progress, options))
+
+
+def _fitted(
+    recordings: Sequence[tuple[str, Mapping[str, Any]]],
+    rig: Rig,
+    laws: Sequence[str],
+    progress: bool,
+    options: Mapping[str, Any],
+) -> tuple[list[Fit], list[Result]]:
+    """Fits, and what could not be fitted."""
+    if not recordings:
+        return [], []
+    held = [(f"{name}.npy", npy_of(arrays)) for name, arrays in recordings]
+    given = {tuple(name for name in CHANNELS if own.get(name) is not None) for _, own in recordings}
+    if len(given) > 1:
+        raise ValueError("recordings: expected the same arrays in all of them")
+    channels = [(name, *CHANNELS[name]) for name in given.pop()]
+    words = [f"--channel={channel}={name}:{unit}" for name, channel, unit in channels]
+    with Words() as own, bar(progress) as tell:
+        words += own.of_option("--law", list(laws))
+        for name, value in options.items():
+            words += own.of_option(f"--{name.replace('_', '-')}", value)
+        found = _native.fit(held, [*_rig_words(rig), "--time=t", *words], tell)
+    fits, failed = [], []
+    for (name, _), (native, wrong) in zip(recordings, found):
+        if native is None:
+            message, request = wrong or ("", False)
+            if request:
+                raise ValueError(message)
+            failed.append(Result({"id": name, "law": None, "message": message, "findings": []}))
+            continue
+        result = Result.from_json(native.json())
+        fits += [Fit(impact, native) for impact in result.impacts]
+        failed += result.failed
+    return fits, failed
+
+
+def _rig_words(rig: Rig) -> list[str]:
+    if not isinstance(rig, (Pendulum, Carriage)):
+        raise TypeError(f"rig: expected a Pendulum or a Carriage, found {rig!r}")
+    words = [f"--rig={type(rig).__name__.lower()}"]
+    for field in fields(rig):
+        unit, dimension = _UNITS[field.name]
+        value = si_of(field.name, getattr(rig, field.name), dimension)
+        if value is not None:
+            text = value if isinstance(value, str) else f"{float(value)!r} {unit}"
+            words.append(f"--{field.name.replace('_', '-')}={text}")
+    return words

@@ -1,0 +1,106 @@
+//! Fits of recordings in memory.
+
+use crate::request::{parsed, raised};
+use crate::work::beside;
+use clap::Parser;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use std::ffi::OsString;
+use std::path::Path;
+use std::sync::Arc;
+use windfall_campaign::impacts::run::{FittedRecording, fit_bytes};
+use windfall_campaign::pipeline::request::FitRequest;
+use windfall_campaign::recording::request::RecordingRequest;
+use windfall_files::error::Error;
+use windfall_files::on_threads::on_threads;
+use windfall_files::progress::{Progress, for_each, quiet};
+
+/// What is fitted, and how.
+#[derive(Parser)]
+struct FitWords {
+    #[command(flatten)]
+    fit: FitRequest,
+    #[command(flatten)]
+    recording: RecordingRequest,
+}
+
+/// A fitted recording.
+#[pyclass(frozen)]
+pub struct Fitted {
+    fitted: Arc<FittedRecording>,
+}
+
+#[pymethods]
+impl Fitted {
+    /// What `windfall fit --format json` would print.
+    fn json(&self) -> PyResult<String> {
+        let text = self.fitted.outcome().json();
+        text.map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    }
+
+    /// What `windfall fit --detail` would write of a law, as JSON.
+    fn detail(&self, py: Python<'_>, law: String) -> PyResult<String> {
+        let fitted = Arc::clone(&self.fitted);
+        let detail = beside(py, None, move |_| fitted.detail(&law))?;
+        detail
+            .map(|own| own.to_string())
+            .map_err(|error| raised(py, &error))
+    }
+}
+
+/// A recording in memory: its name, and the bytes of a file of any format.
+type Held = (String, Vec<u8>);
+
+/// A fit, or what is wrong, and whether with the request.
+type Found = (Option<Fitted>, Option<(String, bool)>);
+
+/// Fits recordings at once, with the bits of single fits.
+///
+/// * `words`: options of `windfall fit`; with `--threads`, on that many
+#[pyfunction]
+#[pyo3(signature = (held, words, progress=None))]
+pub fn fit(
+    py: Python<'_>,
+    held: Vec<Held>,
+    words: Vec<OsString>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<Found>> {
+    let words: FitWords = parsed(words)?;
+    let fit = &words.fit;
+    if fit.figures.is_some() || fit.detail.is_some() || fit.card.is_some() {
+        let told = "fits of arrays write nothing; what --detail writes is in `detail`";
+        return Err(PyValueError::new_err(told));
+    }
+    let held: Vec<_> = held.into_iter().map(|own| (own.0, own.1.into())).collect();
+    let fits = beside(py, progress, move |watch| {
+        let threads = words.fit.threads;
+        let work = || match held.as_slice() {
+            [one] => Ok(vec![fit_one(one, &words, &*watch)]),
+            many => for_each(&*watch, many.len(), |at| fit_one(&many[at], &words, &quiet)),
+        };
+        // The threads that are there do for all cores.
+        match threads {
+            None => work(),
+            threads => on_threads(threads, work),
+        }
+    })?;
+    let fits = fits.map_err(|error| raised(py, &error))?.into_iter();
+    Ok(fits
+        .map(|fit| match fit {
+            Ok(fitted) => (Some(fitted), None),
+            Err(error) => (None, Some((error.to_string(), error.is_request()))),
+        })
+        .collect())
+}
+
+fn fit_one(
+    (name, bytes): &(String, Arc<[u8]>),
+    words: &FitWords,
+    progress: Progress,
+) -> Result<Fitted, Error> {
+    let held = (Path::new(name), Arc::clone(bytes));
+    let fitted = fit_bytes(held, &words.recording, &words.fit, progress)?;
+    Ok(Fitted {
+        fitted: Arc::new(fitted),
+    })
+}
