@@ -77,7 +77,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "cli",
-        "web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files",
+        "web workspace engines scene-run report drop population plan simulate inspect measure campaign tables cards draw files numerics",
     ),
     ("python", "cli campaign files formats"),
     ("test-data", ""),

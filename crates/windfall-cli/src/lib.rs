@@ -26,10 +26,12 @@ pub use crate::caller::{Said, Watch};
 
 use args::common::{Arguments, Command};
 use args::groups::grouped;
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use windfall_files::allowed::{Allowed, allow};
 use windfall_files::inputs::guard_inputs;
+use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// The program: does what its command line says, and prints.
 ///
@@ -78,8 +80,30 @@ pub fn commands() -> clap::Command {
 }
 
 fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
-    let matches = grouped(Arguments::command()).try_get_matches_from(words)?;
-    Arguments::from_arg_matches(&matches)
+    let words: Vec<OsString> = words.into_iter().collect();
+    let matches = grouped(Arguments::command()).try_get_matches_from(&words);
+    Arguments::from_arg_matches(&matches.map_err(|error| with_nearest(error, &words))?)
+}
+
+/// An unknown command with those that it may be meant for, also where one letter of three is
+/// missing.
+fn with_nearest(mut error: clap::Error, words: &[OsString]) -> clap::Error {
+    let Some(ContextValue::String(unknown)) = error.get(ContextKind::InvalidSubcommand) else {
+        return error;
+    };
+    let arguments = Arguments::command();
+    let mut above = &arguments;
+    for word in words.iter().skip(1) {
+        above = above.find_subcommand(word).unwrap_or(above);
+    }
+    let names = above.get_subcommands().map(clap::Command::get_name);
+    let nearest = nearest_names(unknown, names);
+    let nearest: Vec<String> = nearest.into_iter().map(str::to_owned).collect();
+    if !nearest.is_empty() {
+        let known = ContextValue::Strings(nearest);
+        error.insert(ContextKind::SuggestedSubcommand, known);
+    }
+    error
 }
 
 /// Shows help, or what is wrong with a command line.

@@ -240,3 +240,54 @@ fn closed_form_completions_name_the_commands() {
         assert!(completions.contains(command), "{command}");
     }
 }
+
+#[test]
+fn rejects_unknown_commands_with_those_that_are_meant() {
+    let cases: [(&[&str], &str); 4] = [
+        (&["ft"], "similar subcommand exists: 'fit'"),
+        (
+            &["regres", "table.csv"],
+            "similar subcommand exists: 'regress'",
+        ),
+        (
+            &["scene", "rn", "scene.toml"],
+            "similar subcommand exists: 'run'",
+        ),
+        (&["telescope"], "unrecognized subcommand 'telescope'"),
+    ];
+    for (words, told) in cases {
+        let output = windfall(words);
+        let found = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(found.contains(told), "{found}");
+    }
+}
+
+#[test]
+fn a_campaign_is_fitted_from_within() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &[&str], inside: &str| {
+        let mut command = Command::cargo_bin("windfall").unwrap();
+        let directory = folder.path().join(inside);
+        command.args(words).current_dir(directory).output().unwrap()
+    };
+    let law = "hertz(k=4e5)";
+    let made = run(
+        &[
+            "simulate",
+            "pendulum",
+            "--law",
+            law,
+            "--recordings",
+            "study",
+        ],
+        "",
+    );
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let within = run(&["fit", "--law", "hertz", "--format", "csv"], "study");
+    assert!(within.status.success(), "{}", text(&within.stderr));
+    let named = run(&["fit", "study", "--law", "hertz", "--format", "csv"], "");
+    assert_eq!(within.stdout, named.stdout);
+    let told = text(&run(&["fit"], "").stderr);
+    assert!(told.contains("campaign.toml"), "{told}");
+}

@@ -25,7 +25,7 @@ Examples:
 )]
 pub struct CalibrateArguments {
     /// The campaign directory
-    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(default_value = ".", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
     #[command(flatten)]
     pub request: CalibrateRequest,

@@ -40,7 +40,7 @@ Examples:
 )]
 pub struct FitArguments {
     /// The campaign directory, one recording of a campaign, or any recording with --rig
-    #[arg(value_name = "DIR|FILE", value_hint = ValueHint::AnyPath)]
+    #[arg(default_value = ".", value_name = "DIR|FILE", value_hint = ValueHint::AnyPath)]
     pub directory: PathBuf,
     #[command(flatten)]
     pub request: FitRequest,

@@ -20,7 +20,7 @@ Examples:
 )]
 pub struct LawsArguments {
     /// The campaign directory
-    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(default_value = ".", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
     /// A law to compare; may be repeated. None: the campaign's, if it names two or more, else one of each form
     #[arg(long = "law", value_name = "LAW")]

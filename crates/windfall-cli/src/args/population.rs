@@ -26,7 +26,7 @@ Examples:
 )]
 pub struct PopulationArguments {
     /// The campaign directory
-    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(default_value = ".", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
     /// Column, log(column) or impact_velocity that the parameters may depend on; may be repeated
     #[arg(long = "covariate", value_name = "COVARIATE")]

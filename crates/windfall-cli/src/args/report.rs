@@ -20,7 +20,7 @@ Examples:
 )]
 pub struct ReportArguments {
     /// The campaign directory
-    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(default_value = ".", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub directory: PathBuf,
     /// Directory to write into in place of DIR/report
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]

@@ -203,7 +203,7 @@ def inspect(
 
 
 def fit_campaign(
-    directory: Path,
+    directory: Path | None = None,
     *,
     law: Value | Sequence[Value] | None = None,
     laws: Path | None = None,
@@ -253,7 +253,7 @@ def fit_campaign(
     The command `windfall fit`.
 
     * `directory`: The campaign directory, one recording of a campaign, or any recording with
-      --rig
+      --rig [default: .]
     * `law`: Law to fit in place of those of the campaign; may be repeated
     * `laws`: File of own laws ([laws.NAME] tables) that --law can name, besides those of the
       campaign
@@ -361,7 +361,7 @@ def fit_campaign(
 
 
 def laws(
-    directory: Path,
+    directory: Path | None = None,
     *,
     law: Value | Sequence[Value] | None = None,
     free: Value | Sequence[Value] | None = None,
@@ -378,7 +378,7 @@ def laws(
 
     The command `windfall laws`.
 
-    * `directory`: The campaign directory
+    * `directory`: The campaign directory [default: .]
     * `law`: A law to compare; may be repeated. None: the campaign's, if it names two or more,
       else one of each form
     * `free`: A parameter to estimate although it has a usual value; may be repeated
@@ -409,7 +409,7 @@ def laws(
 
 
 def population(
-    directory: Path,
+    directory: Path | None = None,
     *,
     covariate: Value | Sequence[Value] | None = None,
     law: Value | None = None,
@@ -429,7 +429,7 @@ def population(
 
     The command `windfall population`.
 
-    * `directory`: The campaign directory
+    * `directory`: The campaign directory [default: .]
     * `covariate`: Column, log(column) or impact_velocity that the parameters may depend on; may
       be repeated
     * `law`: Law in place of the campaign's
@@ -437,7 +437,8 @@ def population(
     * `posterior`: Draw the posterior beside the estimate, as a check; minutes for large campaigns
     * `draws`: Draws of each of four chains for --posterior (1000)
     * `seed`: Seed of the posterior's draws (1)
-    * `detail`: Write the posterior's draws as JSON for arviz.from_json; draws them anew
+    * `detail`: Write the posterior's draws, as JSON for arviz.from_json or as a table (.parquet,
+      .arrow or .csv); draws them anew
     * `card`: Write the population as a law card (TOML, or JSON where the name ends with .json)
     * `refit`: Find the answer anew, even where nothing has changed since it was found
     * `threads`: Number of threads; all cores if left out. It never changes a result
@@ -465,7 +466,7 @@ def population(
 
 
 def report(
-    directory: Path,
+    directory: Path | None = None,
     *,
     out: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
@@ -482,7 +483,7 @@ def report(
 
     The command `windfall report`.
 
-    * `directory`: The campaign directory
+    * `directory`: The campaign directory [default: .]
     * `out`: Directory to write into in place of DIR/report
     * `theme`: Colours of the files of figures; the page follows the reader's setting [default:
       light]
@@ -512,7 +513,7 @@ def report(
 
 
 def calibrate(
-    directory: Path,
+    directory: Path | None = None,
     *,
     way: Literal["waveform", "features", "design"] | Sequence[Literal["waveform", "features", "design"]] | None = None,
     figures: Path | None = None,
@@ -529,7 +530,7 @@ def calibrate(
 
     The command `windfall calibrate`.
 
-    * `directory`: The campaign directory
+    * `directory`: The campaign directory [default: .]
     * `way`: Ways to calibrate in place of the campaign's; may be repeated
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
