@@ -12,7 +12,7 @@ use arrow_array::types::{
 };
 use arrow_array::{Array, RecordBatch};
 use arrow_ipc::reader::FileReader;
-use arrow_schema::{ArrowError, DataType, Field, TimeUnit};
+use arrow_schema::{ArrowError, DataType, Field, Metadata, TimeUnit};
 use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
@@ -48,6 +48,7 @@ impl Batches {
 /// An open file of columns.
 pub struct ColumnReader {
     names: Vec<String>,
+    notes: Metadata,
     batches: Batches,
 }
 
@@ -81,13 +82,23 @@ impl ColumnReader {
             let fields = schema.fields();
             fields.iter().try_for_each(|field| check(field))?;
             let names = fields.iter().map(|own| own.name().clone()).collect();
-            Ok(Self { names, batches })
+            let notes = schema.metadata().clone();
+            Ok(Self {
+                names,
+                notes,
+                batches,
+            })
         })
     }
 
     /// Names of its columns.
     pub fn names(&self) -> &[String] {
         &self.names
+    }
+
+    /// What the file says of itself under a name.
+    pub fn note(&self, name: &str) -> Option<&str> {
+        self.notes.get(name).map(String::as_str)
     }
 
     /// The next rows; `None` behind the last.

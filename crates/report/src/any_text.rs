@@ -42,8 +42,9 @@ pub fn csv_of_any(outcome: &AnyOutcome) -> Result<String, Error> {
 pub fn write_any(path: &Path, form: Form, outcome: &AnyOutcome) -> Result<(), Error> {
     match outcome {
         AnyOutcome::Impacts(own) => {
-            let table = ImpactTable::new(own);
-            write_rows(path, form, &table.schema, table.rows())
+            let table = ImpactTable::of(own);
+            let rows = own.impacts.iter().map(|impact| table.row(impact));
+            write_rows(path, form, &table.schema, rows)
         }
         AnyOutcome::Measured(_) => {
             let table = FoundTable::read("fit", &csv_of_any(outcome)?)?;

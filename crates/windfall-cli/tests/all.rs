@@ -38,6 +38,7 @@ mod revision;
 mod scene;
 mod serve;
 mod several_contacts;
+mod shards;
 mod stopped_runs;
 mod surface_blocks;
 mod surface_random;

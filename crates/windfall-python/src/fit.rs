@@ -5,9 +5,10 @@ use crate::work::beside;
 use clap::Parser;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use std::ffi::OsString;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use windfall_campaign::impacts::run::{FittedRecording, fit_bytes};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::request::RecordingRequest;
@@ -49,7 +50,7 @@ impl Fitted {
 }
 
 /// A recording in memory: its name, and the bytes of a file of any format.
-type Held = (String, Vec<u8>);
+type Held = (String, PyBackedBytes);
 
 /// A fit, or what is wrong, and whether with the request.
 type Found = (Option<Fitted>, Option<(String, bool)>);
@@ -65,32 +66,58 @@ pub fn fit(
     words: Vec<OsString>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<Found>> {
-    let words: FitWords = parsed(words)?;
+    let words = request(words)?;
     let fit = &words.fit;
     if fit.figures.is_some() || fit.detail.is_some() || fit.card.is_some() {
         let told = "fits of arrays write nothing; what --detail writes is in `detail`";
         return Err(PyValueError::new_err(told));
     }
-    let held: Vec<_> = held.into_iter().map(|own| (own.0, own.1.into())).collect();
+    let held = held.into_iter().map(|own| (own.0, Arc::from(&*own.1)));
+    let held: Vec<(String, Arc<[u8]>)> = held.collect();
+    // A thread of its own would be much of the time of one fit, which is not interrupted.
+    if let ([one], None) = (held.as_slice(), fit.threads) {
+        return Ok(vec![found(py.detach(|| fit_one(one, &words, &quiet)))]);
+    }
     let fits = beside(py, progress, move |watch| {
         let threads = words.fit.threads;
-        let work = || match held.as_slice() {
-            [one] => Ok(vec![fit_one(one, &words, &*watch)]),
-            many => for_each(&*watch, many.len(), |at| fit_one(&many[at], &words, &quiet)),
-        };
+        let one = |at: usize| fit_one(&held[at], &words, &quiet);
+        let work = || for_each(&*watch, held.len(), one);
         // The threads that are there do for all cores.
         match threads {
             None => work(),
             threads => on_threads(threads, work),
         }
     })?;
-    let fits = fits.map_err(|error| raised(py, &error))?.into_iter();
-    Ok(fits
-        .map(|fit| match fit {
-            Ok(fitted) => (Some(fitted), None),
-            Err(error) => (None, Some((error.to_string(), error.is_request()))),
-        })
-        .collect())
+    let fits = fits.map_err(|error| raised(py, &error))?;
+    Ok(fits.into_iter().map(found).collect())
+}
+
+fn found(fit: Result<Fitted, Error>) -> Found {
+    match fit {
+        Ok(fitted) => (Some(fitted), None),
+        Err(error) => (None, Some((error.to_string(), error.is_request()))),
+    }
+}
+
+/// Requests that are remembered: to read one takes as long as to fit an impact, and the next
+/// recording usually has the same.
+const REMEMBERED: usize = 8;
+
+/// What words ask for.
+///
+/// # Errors
+/// They cannot be used.
+fn request(words: Vec<OsString>) -> PyResult<Arc<FitWords>> {
+    static KNOWN: Mutex<Vec<(Vec<OsString>, Arc<FitWords>)>> = Mutex::new(Vec::new());
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, own)) = known().iter().find(|own| own.0 == words) {
+        return Ok(Arc::clone(own));
+    }
+    let request = Arc::new(parsed::<FitWords>(words.clone())?);
+    let mut known = known();
+    known.truncate(REMEMBERED - 1);
+    known.insert(0, (words, Arc::clone(&request)));
+    Ok(request)
 }
 
 fn fit_one(

@@ -13,6 +13,7 @@ pub mod key;
 pub mod mass;
 mod response;
 pub mod run;
+pub mod shard;
 pub mod table;
 pub mod text;
 pub mod two_stage;

@@ -2,6 +2,7 @@
 
 use crate::result::outcome::{CampaignOutcome, ImpactOutcome};
 use crate::result::quantity::{QUANTITIES, Quantity};
+use crate::settings::model::ImpactCampaign;
 use itertools::Itertools;
 use std::iter::once;
 use windfall_files::error::Error;
@@ -23,36 +24,43 @@ const ALWAYS: usize = 12;
 pub struct ImpactTable<'a> {
     /// Its columns: the parameters are those of all laws, the rest is always the same.
     pub schema: Schema,
-    outcome: &'a CampaignOutcome,
+    simulated: &'a str,
     parameters: Vec<&'a str>,
 }
 
 impl<'a> ImpactTable<'a> {
-    /// The table of a campaign.
-    pub fn new(outcome: &'a CampaignOutcome) -> Self {
+    /// The table of results.
+    pub fn of(outcome: &'a CampaignOutcome) -> Self {
         let impacts = outcome.impacts.iter();
-        let names = impacts.flat_map(|impact| impact.parameters.names());
-        let parameters: Vec<&str> = names.unique().collect();
-        let note = ("campaign".to_owned(), outcome.campaign.clone());
+        let parameters = impacts.flat_map(|impact| impact.parameters.names());
+        let parameters = parameters.unique().collect();
+        Self::new(&outcome.campaign, outcome.simulated.as_deref(), parameters)
+    }
+
+    /// The table of the results that a campaign will have.
+    pub fn of_campaign(campaign: &'a ImpactCampaign) -> Self {
+        let laws = campaign.fit.laws.iter();
+        let parameters = laws.flat_map(|law| law.kind.describe().parameters);
+        let parameters = parameters.map(|own| own.name).unique().collect();
+        let shared = &campaign.shared;
+        Self::new(&shared.title, shared.simulated.as_deref(), parameters)
+    }
+
+    fn new(title: &str, simulated: Option<&'a str>, parameters: Vec<&'a str>) -> Self {
         Self {
             schema: Schema {
                 table: "fit",
                 version: VERSION,
                 columns: columns(&parameters),
-                notes: vec![note],
+                notes: vec![("campaign".to_owned(), title.to_owned())],
             },
-            outcome,
+            simulated: simulated.unwrap_or(""),
             parameters,
         }
     }
 
-    /// Its rows.
-    pub fn rows(&self) -> impl Iterator<Item = Vec<Cell<'a>>> + Clone {
-        let impacts = self.outcome.impacts.iter();
-        impacts.map(|impact| self.row(impact))
-    }
-
-    fn row(&self, impact: &'a ImpactOutcome) -> Vec<Cell<'a>> {
+    /// The row of a result.
+    pub fn row<'b>(&'b self, impact: &'b ImpactOutcome) -> Vec<Cell<'b>> {
         let names = [&impact.id, &impact.specimen].map(|own| Cell::text(own.as_str()));
         let group = Cell::text(impact.group.as_deref().unwrap_or(""));
         let rest = [&impact.file, &impact.law].map(|own| Cell::text(own.as_str()));
@@ -73,7 +81,7 @@ impl<'a> ImpactTable<'a> {
             Cell::Count(impact.samples as u64),
             Cell::Flag(impact.converged),
             Cell::text(findings.collect::<Vec<_>>().join(" ")),
-            Cell::text(self.outcome.simulated.as_deref().unwrap_or("")),
+            Cell::text(self.simulated),
         ]);
         row.extend(others.iter().map(derived));
         row.extend(QUANTITIES.iter().map(|own| Cell::number(sd(own))));
@@ -88,8 +96,9 @@ impl<'a> ImpactTable<'a> {
 /// # Errors
 /// None in practice: every cell can be written.
 pub fn csv_of_campaign(outcome: &CampaignOutcome) -> Result<String, Error> {
-    let table = ImpactTable::new(outcome);
-    csv_of_table(&table.schema, table.rows())
+    let table = ImpactTable::of(outcome);
+    let rows = outcome.impacts.iter().map(|impact| table.row(impact));
+    csv_of_table(&table.schema, rows)
 }
 
 fn columns(parameters: &[&str]) -> Vec<Column> {

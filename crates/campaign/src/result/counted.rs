@@ -74,9 +74,7 @@ pub fn mark_left_out(campaign: &Campaign, rig: &Rig, impacts: &mut [ImpactOutcom
     let entries: HashMap<&str, &ImpactEntry> = entries.map(|own| (own.id.as_str(), own)).collect();
     for impact in impacts.iter_mut() {
         let entry = entries.get(impact.id.as_str());
-        impact.left_out = entry.and_then(|own| excluded(own)).into_iter().collect();
-        let reasons = own_reasons(impact, rig);
-        impact.left_out.extend(reasons);
+        mark_alone(entry.copied(), rig, impact);
     }
     // Impacts on one fruit lie closer together than those of a group.
     let fruit = |own: &ImpactOutcome| format!("fruit {}", own.specimen);
@@ -87,6 +85,13 @@ pub fn mark_left_out(campaign: &Campaign, rig: &Rig, impacts: &mut [ImpactOutcom
     for (index, reason) in strangers(impacts, group, ("group", SOFT)) {
         impacts[index].left_out.push(reason);
     }
+}
+
+/// Sets why a result does not count, as far as it can be told without the others.
+pub(crate) fn mark_alone(entry: Option<&ImpactEntry>, rig: &Rig, impact: &mut ImpactOutcome) {
+    impact.left_out = entry.and_then(excluded).into_iter().collect();
+    let reasons = own_reasons(impact, rig);
+    impact.left_out.extend(reasons);
 }
 
 /// Sets why results do not count ([`mark_left_out`]); the entries of which no result counts,

@@ -34,7 +34,19 @@ pub fn column_files(path: &Path) -> IoResult<Vec<PathBuf>> {
         }
     }
     files.sort();
-    Ok(files)
+    match files.is_empty() {
+        true => Err(IoError::other(
+            "it is a folder, and no file in it ends with .parquet or .arrow",
+        )),
+        false => Ok(files),
+    }
+}
+
+/// What files that windfall wrote have in common, if they are parts of one table.
+type Marks = [Option<String>; 3];
+
+fn marks(open: &ColumnReader) -> Marks {
+    ["table", "schema", "options"].map(|name| open.note(name).map(str::to_owned))
 }
 
 /// The text of a table of columns, made as it is read.
@@ -44,6 +56,7 @@ pub struct ColumnsText {
     /// The open file, where it is one of several.
     one: Option<PathBuf>,
     names: Vec<String>,
+    marks: Marks,
     open: ColumnReader,
     text: Vec<u8>,
     at: usize,
@@ -68,6 +81,7 @@ impl ColumnsText {
             rest: files,
             one,
             names,
+            marks: marks(&open),
             open,
             text,
             at: 0,
@@ -96,10 +110,14 @@ impl ColumnsText {
                 return Ok(false);
             };
             self.open = ColumnReader::open(&next).map_err(|error| failed(Some(&next), error))?;
-            if self.open.names() != self.names {
+            let what = match () {
+                () if self.open.names() != self.names => "has other columns than",
+                () if marks(&self.open) != self.marks => "was made with other options than",
+                () => "",
+            };
+            if !what.is_empty() {
                 let told = format!(
-                    "{} has other columns than the files before it: make it again with the options \
-                     of the others, or move it elsewhere",
+                    "{} {what} the files before it: make it again as the others, or move it elsewhere",
                     next.display()
                 );
                 return Err(IoError::other(told));
@@ -196,6 +214,11 @@ mod tests {
     #[test]
     fn a_folder_is_one_table() {
         let folder = tempfile::tempdir().unwrap();
+        let error = read_table(folder.path()).unwrap_err().to_string();
+        assert!(
+            error.contains("no file in it ends with .parquet"),
+            "{error}"
+        );
         let part = |name: &str, from, names: &[&str]| {
             let path = folder.path().join(name);
             let form = Form::of_path("--out", &path).unwrap();

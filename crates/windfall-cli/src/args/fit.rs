@@ -3,6 +3,7 @@
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_campaign::impacts::shard::Shard;
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::request::RecordingRequest;
 
@@ -31,6 +32,8 @@ Examples:
       residuals, covariances and draws of each fit: `arviz.from_json(\"fits/….json\")`
   windfall fit my-campaign --out fits.parquet
       the table of results for pandas, polars, DuckDB or R, with units in its metadata
+  windfall fit my-campaign --shard 3/64 --out parts/3.parquet
+      the third of 64 parts, on a machine of its own; all parts in one folder are one table
   windfall fit my-campaign --watch
       while you measure: each new recording is listed by [files] names, fitted and shown
   windfall fit impact.csv --rig pendulum --inertia '0.01435 kg m^2' --arm '0.505 m' \\
@@ -50,6 +53,10 @@ pub struct FitArguments {
     /// Write the table of results into a file, too: .csv, .parquet or .arrow
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub out: Option<PathBuf>,
+    /// Fit this part of the impacts alone, such as 3/64, and write its rows to --out as they come;
+    /// results.sqlite is left alone
+    #[arg(long, value_name = "PART/PARTS", requires = "out", conflicts_with_all = ["figures", "detail", "card", "rig", "watch", "joint", "refit"])]
+    pub shard: Option<Shard>,
     /// Fit each recording that lands in DIR/raw, as soon as it stops growing, and show the mean
     /// so far, until Ctrl-C
     #[arg(long, conflicts_with_all = ["figures", "detail", "card", "rig", "out"])]

@@ -3,9 +3,12 @@
 use crate::args::fit::FitArguments;
 use crate::args::format::Format;
 use crate::progress::with_bar;
-use crate::show::{message, show, tell_failures, write_result};
+use crate::show::{
+    message, show, tell_failures, tell_unused, write_json, write_names, write_result,
+};
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
+use windfall_campaign::impacts::shard::{ShardOutcome, fit_shard};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_files::error::Error;
 use windfall_files::sheet::form::Form;
@@ -48,6 +51,10 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         )?;
         return Ok(());
     }
+    if let (Some(shard), Some((out, _))) = (arguments.shard, out) {
+        let outcome = with_bar(|progress| fit_shard(path, request, shard, out, progress));
+        return show_shard(arguments.format, &outcome.map_err(tell_failures)?);
+    }
     let outcome = with_bar(|progress| match &arguments.recording {
         Some(recording) => fit_recording(path, recording, request, progress)
             .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
@@ -82,6 +89,22 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         message(&status_line(outcome.status()));
     }
     Ok(())
+}
+
+/// Says what became of a part of a campaign.
+fn show_shard(format: Format, outcome: &ShardOutcome) -> anyhow::Result<()> {
+    tell_unused(Format::Json, &outcome.failed);
+    let file = outcome.file.display().to_string();
+    match format {
+        Format::Json => write_json(outcome),
+        Format::Csv => write_names("file", &[file]),
+        Format::Text => write_result(&format!(
+            "{} impacts: {} rows; {} could not be fitted.\n\nWritten: {file}\n",
+            outcome.impacts,
+            outcome.rows,
+            outcome.failed.len()
+        )),
+    }
 }
 
 fn status_line(status: &windfall_campaign::result::outcome::StatusOutcome) -> String {

@@ -231,6 +231,7 @@ def fit_campaign(
     card: Path | None = None,
     threads: int | None = None,
     out: Path | None = None,
+    shard: Value | None = None,
     rig: Literal["pendulum", "carriage"] | None = None,
     inertia: Value | None = None,
     arm: Value | None = None,
@@ -290,6 +291,8 @@ def fit_campaign(
       seen
     * `threads`: Number of threads; all cores if left out. It never changes a result
     * `out`: Write the table of results into a file, too: .csv, .parquet or .arrow
+    * `shard`: Fit this part of the impacts alone, such as 3/64, and write its rows to --out as
+      they come; results.sqlite is left alone
     * `rig`: The rig that the recording comes from
     * `inertia`: Pendulum: moment of inertia about the pivot, such as "0.01435 kg m^2"
     * `arm`: Pendulum: pivot to point of contact, such as "0.505 m"
@@ -339,6 +342,7 @@ def fit_campaign(
             "--card": card,
             "--threads": threads,
             "--out": out,
+            "--shard": shard,
             "--rig": rig,
             "--inertia": inertia,
             "--arm": arm,

@@ -1,0 +1,108 @@
+//! `windfall fit --shard`: parts of a campaign that are one table together.
+
+#![allow(clippy::unwrap_used)]
+
+use assert_cmd::Command;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+fn windfall(folder: &Path, words: &str) -> std::process::Output {
+    let mut command = Command::cargo_bin("windfall").unwrap();
+    let words = words.split(' ').map(|word| word.replace('_', " "));
+    command.args(words).current_dir(folder).output().unwrap()
+}
+
+fn run(folder: &Path, words: &str) -> String {
+    let output = windfall(folder, words);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{words}: {told}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What a command that is refused says.
+fn refused(folder: &Path, words: &str) -> String {
+    let output = windfall(folder, words);
+    assert!(!output.status.success(), "{words}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// Rows by the names of their columns, without blank cells.
+fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    let header = reader.headers().unwrap().clone();
+    let rows = reader.records().map(|row| {
+        let row = row.unwrap();
+        let cells = header.iter().zip(&row).filter(|(_, cell)| !cell.is_empty());
+        cells
+            .map(|(name, cell)| (name.to_owned(), cell.to_owned()))
+            .collect()
+    });
+    rows.collect()
+}
+
+const SIMULATE: &str = "simulate pendulum --law kuwabara-kono(k=753599,_c=1524) --spread k=133165 \
+                        --specimens 7 --repeats 2 --recordings study";
+const LAWS: &str = "--law kuwabara-kono --law tsuji";
+
+#[test]
+fn repeats_the_rows_of_the_whole_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    run(folder, SIMULATE);
+    std::fs::create_dir(folder.join("parts")).unwrap();
+    let mut parts = Vec::new();
+    for part in 1..=3 {
+        let fit = format!("fit study {LAWS} --shard {part}/3 --out");
+        run(folder, &format!("{fit} {part}.csv"));
+        parts.extend(rows(&folder.join(format!("{part}.csv"))));
+        run(folder, &format!("{fit} parts/{part}.parquet --threads 1"));
+    }
+    assert!(!folder.join("study/results.sqlite").exists());
+    run(folder, &format!("fit study {LAWS} --out whole.csv"));
+    let whole = rows(&folder.join("whole.csv"));
+    assert_eq!(whole.len(), 28);
+    assert_eq!(parts, whole);
+    // The same as one table of columns.
+    let summary = "--value k --by law --format csv";
+    let found = run(folder, &format!("summary parts {summary}"));
+    assert_eq!(found, run(folder, &format!("summary whole.csv {summary}")));
+
+    // Another option gives the same columns.
+    let other = format!("fit study {LAWS} --onset fixed --shard 2/3 --out parts/2.parquet");
+    run(folder, &other);
+    let told = refused(folder, &format!("summary parts {summary}"));
+    assert!(
+        told.contains("2.parquet was made with other options"),
+        "{told}"
+    );
+}
+
+#[test]
+fn rejects_parts_that_cannot_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    run(folder, SIMULATE);
+    run(folder, "simulate tap taps --fruit 2");
+    for (words, told) in [
+        ("fit study --shard 0/3 --out a.csv", "counted from 1 to 3"),
+        ("fit study --shard 4/3 --out a.csv", "counted from 1 to 3"),
+        ("fit study --shard third --out a.csv", "such as 3/64"),
+        ("fit study --shard 1/3", "--out"),
+        ("fit study --shard 1/3 --out a.xls", ".parquet"),
+        ("fit study --shard 1/3 --out study/impacts.csv", "an input"),
+        (
+            "fit study --shard 1/3 --out a.csv --joint",
+            "cannot be used",
+        ),
+        ("fit taps --shard 1/3 --out a.csv", "single impacts"),
+        (
+            "fit study/raw/specimen-01-1.csv --shard 1/3 --out a.csv",
+            "campaign.toml",
+        ),
+        ("fit study --shard 90/99 --out a.csv --onset never", "onset"),
+    ] {
+        let found = refused(folder, words);
+        assert!(found.contains(told), "{words}: {found}");
+        assert!(!folder.join("a.csv").exists(), "{words}");
+    }
+}
