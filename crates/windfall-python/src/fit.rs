@@ -29,6 +29,12 @@ struct FitWords {
 #[pyclass(frozen)]
 pub struct Fitted {
     fitted: Arc<FittedRecording>,
+    /// Id and law of each of its fits.
+    #[pyo3(get)]
+    fits: Vec<(String, String)>,
+    /// Laws that could not be fitted.
+    #[pyo3(get)]
+    failed: usize,
 }
 
 #[pymethods]
@@ -127,7 +133,13 @@ fn fit_one(
 ) -> Result<Fitted, Error> {
     let held = (Path::new(name), Arc::clone(bytes));
     let fitted = fit_bytes(held, &words.recording, &words.fit, progress)?;
+    let outcome = fitted.outcome();
+    let fits = outcome.impacts.iter();
+    let fits = fits.map(|own| (own.id.clone(), own.law.clone())).collect();
+    let failed = outcome.failed.len();
     Ok(Fitted {
         fitted: Arc::new(fitted),
+        fits,
+        failed,
     })
 }

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from tempfile import TemporaryDirectory
-from typing import Any, Protocol, Union
+from typing import TYPE_CHECKING, Any, Protocol, Union
 
 from windfall import _native
 from windfall._errors import WindfallError
 from windfall._progress import bar
 from windfall._result import Result
+
+if TYPE_CHECKING:
+    from tempfile import TemporaryDirectory
 
 
 class ToCsv(Protocol):
@@ -130,6 +132,9 @@ class Words:
 
     def _path(self) -> str:
         if self._folder is None:
+            # Only few calls need it, and it takes as long to import as all the rest.
+            from tempfile import TemporaryDirectory
+
             self._folder = TemporaryDirectory(prefix="windfall-")
         self._files.append(os.path.join(self._folder.name, f"{len(self._files)}.csv"))
         return self._files[-1]

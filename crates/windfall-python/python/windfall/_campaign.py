@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from windfall import _commands
 from windfall._call import Path, Value
 from windfall._result import Result
+
+if TYPE_CHECKING:
+    from tempfile import TemporaryDirectory
 
 
 class Campaign:
@@ -64,6 +66,8 @@ class Population(Result):
         """Its law card, written to `path`, or for as long as the card is used."""
         folder = None
         if path is None:
+            from tempfile import TemporaryDirectory
+
             folder = TemporaryDirectory(prefix="windfall-")
             path = os.path.join(folder.name, "law.toml")
         _commands.population(self._directory, card=path, **{**self._options, **options})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Union
 
@@ -66,27 +67,59 @@ _UNITS = {
 }
 
 
+class _Fitted:
+    """A fitted recording; what it says is read when it is first asked for."""
+
+    def __init__(self, native: _native.Fitted) -> None:
+        self.native = native
+
+    @cached_property
+    def result(self) -> Result:
+        return Result.from_json(self.native.json())
+
+
 class Fit:
     """A law, fitted to one impact.
 
-    * `law`: its name
-    * `params`: its parameters by name, each with `value`, `sd`, `low`, `high`, `unit`
-    * `nuisances`: initial velocity, onset and offset, as far as they were estimated
-    * `derived`: velocities, energies, peaks
-    * `findings`: what a reader must know
-    * `result`: all that the command says of an impact
+    * `id`: what the recording was called
+    * `law`: the name of the law
     """
 
-    def __init__(self, impact: Result, native: _native.Fitted) -> None:
-        self.result = impact
-        self.id: str = impact.id
-        self.law: str = impact.law
-        self.params: Result = impact.parameters
-        self.nuisances: Result = impact.nuisances
-        self.derived: Result = impact.derived
-        self.findings: tuple[Result, ...] = impact["findings"]
-        self._native = native
+    def __init__(self, fitted: _Fitted, place: int) -> None:
+        self._fitted = fitted
+        self._place = place
+        self.id, self.law = fitted.native.fits[place]
         self._detail: dict[str, Any] | None = None
+
+    @property
+    def result(self) -> Result:
+        """All that the command says of an impact."""
+        impact: Result = self._fitted.result.impacts[self._place]
+        return impact
+
+    @property
+    def params(self) -> Result:
+        """Parameters of the law by name, each with `value`, `sd`, `low`, `high`, `unit`."""
+        params: Result = self.result.parameters
+        return params
+
+    @property
+    def nuisances(self) -> Result:
+        """Initial velocity, onset and offset, as far as they were estimated."""
+        nuisances: Result = self.result.nuisances
+        return nuisances
+
+    @property
+    def derived(self) -> Result:
+        """Velocities, energies, peaks."""
+        derived: Result = self.result.derived
+        return derived
+
+    @property
+    def findings(self) -> tuple[Result, ...]:
+        """What a reader must know."""
+        findings: tuple[Result, ...] = self.result["findings"]
+        return findings
 
     @property
     def detail(self) -> dict[str, Any]:
@@ -95,7 +128,7 @@ class Fit:
         They are found by fitting once more, when they are first asked for.
         """
         if self._detail is None:
-            self._detail = json.loads(self._native.detail(self.law))
+            self._detail = json.loads(self._fitted.native.detail(self.law))
         return self._detail
 
     @property
@@ -263,9 +296,10 @@ def _fitted(
                 raise ValueError(message)
             failed.append(Result({"id": name, "law": None, "message": message, "findings": []}))
             continue
-        result = Result.from_json(native.json())
-        fits += [Fit(impact, native) for impact in result.impacts]
-        failed += result.failed
+        fitted = _Fitted(native)
+        fits += [Fit(fitted, place) for place in range(len(native.fits))]
+        if native.failed:
+            failed += fitted.result.failed
     return fits, failed
 
 

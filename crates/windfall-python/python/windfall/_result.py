@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from html import escape
 from typing import Any
 
 _SCALARS = (str, int, float, bool, type(None))
@@ -137,12 +136,14 @@ def _first_table(value: Any) -> list[dict[str, Any]] | None:
 
 def table_html(rows: list[dict[str, Any]]) -> str:
     """Rows as a table: columns are what holds a single value in any of them."""
+    from html import escape
+
     columns = dict.fromkeys(
         key for row in rows for key, cell in row.items() if isinstance(cell, _SCALARS)
     )
     head = "".join(f"<th>{escape(str(name))}</th>" for name in columns)
     lines = (
-        "<tr>" + "".join(f"<td>{_cell(row.get(name))}</td>" for name in columns) + "</tr>"
+        "<tr>" + "".join(f"<td>{escape(_cell(row.get(name)))}</td>" for name in columns) + "</tr>"
         for row in rows
     )
     return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table>"
@@ -151,6 +152,4 @@ def table_html(rows: list[dict[str, Any]]) -> str:
 def _cell(value: Any) -> str:
     if value is None or not isinstance(value, _SCALARS):
         return ""
-    if isinstance(value, float):
-        return format(value, ".5g")
-    return escape(str(value))
+    return format(value, ".5g") if isinstance(value, float) else str(value)
