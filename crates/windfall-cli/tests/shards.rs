@@ -67,7 +67,24 @@ fn repeats_the_rows_of_the_whole_campaign() {
     let found = run(folder, &format!("summary parts {summary}"));
     assert_eq!(found, run(folder, &format!("summary whole.csv {summary}")));
 
-    // Another option gives the same columns.
+    // A law of the user that has become another gives the same columns.
+    let law = |formula: &str| {
+        let parameter = "parameters.k = { unit = \"N/m^1.5\", start = 4e5 }";
+        format!("[laws.mine]\nforce = \"{formula}\"\n{parameter}\n")
+    };
+    std::fs::create_dir(folder.join("mine")).unwrap();
+    for (part, formula) in [(1, "k*x^1.5"), (2, "1.1*k*x^1.5")] {
+        std::fs::write(folder.join("mine.toml"), law(formula)).unwrap();
+        let fit = format!("fit study --laws mine.toml --law mine --shard {part}/2");
+        run(folder, &format!("{fit} --out mine/{part}.parquet"));
+    }
+    let told = refused(folder, "summary mine --value k");
+    assert!(
+        told.contains("2.parquet was made with other options"),
+        "{told}"
+    );
+
+    // So does another option.
     let other = format!("fit study {LAWS} --onset fixed --shard 2/3 --out parts/2.parquet");
     run(folder, &other);
     let told = refused(folder, &format!("summary parts {summary}"));

@@ -20,7 +20,7 @@ use windfall_files::found::FailureOutcome;
 use windfall_files::on_threads::on_threads;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::{Progress, for_each};
-use windfall_files::provenance::{VERSION, digest_text};
+use windfall_files::provenance::{REVISION, VERSION, digest_text};
 use windfall_files::sheet::form::Form;
 use windfall_files::sheet::write::{TableWriter, write_table};
 
@@ -41,7 +41,7 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let told = || format!("\"{text}\": expected a part and their number, such as 3/64");
+        let told = || format!("\"{text}\": expected a part and the number of parts, such as 3/64");
         let (number, of) = text.split_once('/').ok_or_else(told)?;
         let number = number.trim().parse().map_err(|_| told())?;
         let of = of.trim().parse().map_err(|_| told())?;
@@ -101,12 +101,12 @@ pub fn fit_shard(
     let form = Form::of_path("--out", out)?;
     request.check_outputs()?;
     on_threads(request.threads, || {
-        // Of the bench all impacts tell.
+        // The bench is estimated from all impacts.
         let rig = find_rig(&mut campaign)?;
         let rows = shard.rows(campaign.shared.entries.len());
         campaign.shared.entries.truncate(rows.end);
         campaign.shared.entries.drain(..rows.start);
-        let table = table_of(&campaign)?;
+        let table = table_of(&campaign, &rig)?;
         let mut found = ShardOutcome {
             windfall: VERSION.to_owned(),
             campaign: campaign.shared.title.clone(),
@@ -130,14 +130,17 @@ pub fn fit_shard(
     })
 }
 
-/// The table of a part: with a digest of what all parts must have in common.
-fn table_of(campaign: &ImpactCampaign) -> Result<ImpactTable<'_>, Error> {
+/// The table of a part: with a digest of what all parts must have in common, definitions of the
+/// user's laws and the rig as it was estimated among it.
+fn table_of<'a>(campaign: &'a ImpactCampaign, rig: &RigFound) -> Result<ImpactTable<'a>, Error> {
     let path = campaign.shared.directory.join(CAMPAIGN_FILE);
     let told = std::fs::read_to_string(&path);
     let told = told.map_err(|source| Error::access(&path, "read", source))?;
     let options = serde_json::Value::from(run_options(campaign));
     let mut table = ImpactTable::of_campaign(campaign);
-    let options = digest_text(&format!("{VERSION}\n{options}\n{told}"));
+    let (laws, rig) = (&campaign.fit.laws, &rig.rig);
+    let options = format!("{REVISION}\n{options}\n{laws:?}\n{rig:?}\n{told}");
+    let options = digest_text(&options);
     table.schema.notes.push(("options".to_owned(), options));
     Ok(table)
 }
