@@ -182,9 +182,20 @@ fn check_sizes(card: &LawCard, source: &TomlSource) -> Result<(), Error> {
 }
 
 fn parsed<T: serde::de::DeserializeOwned>(path: &Path, source: &TomlSource) -> Result<T, Error> {
-    match is_json(path) {
-        true => serde_json::from_str(&source.text).map_err(|error| wrong(path, error.to_string())),
-        false => parse_source(source),
+    if !is_json(path) {
+        return parse_source(source);
+    }
+    let wrong = |error: serde_json::Error| wrong(path, error.to_string());
+    let mut value: serde_json::Value = serde_json::from_str(&source.text).map_err(wrong)?;
+    let shown = value.as_object_mut().is_some_and(|keys| {
+        // What a command that shows a card says of its own.
+        let head = ["windfall", "schema"].map(|key| keys.remove(key).is_some());
+        head.contains(&true)
+    });
+    match shown {
+        true => serde_json::from_value(value).map_err(wrong),
+        // Its errors tell the line.
+        false => serde_json::from_str(&source.text).map_err(wrong),
     }
 }
 

@@ -31,6 +31,8 @@ struct Inputs {
     running: BTreeSet<u64>,
     next: u64,
     files: Noted<PathBuf>,
+    /// What was written, and the newest command then.
+    written: Vec<(u64, PathBuf)>,
     /// Folders that hold recordings alone.
     recordings: Noted<PathBuf>,
     /// Folders with the names in them that belong to a campaign.
@@ -41,6 +43,7 @@ static INPUTS: Mutex<Inputs> = Mutex::new(Inputs {
     running: BTreeSet::new(),
     next: 0,
     files: BTreeMap::new(),
+    written: Vec::new(),
     recordings: BTreeMap::new(),
     campaigns: BTreeMap::new(),
 });
@@ -60,12 +63,47 @@ pub fn guard_inputs() -> Guarded {
     Guarded { number }
 }
 
+/// Files that a command used, in no order of time.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UsedFiles {
+    /// What it read.
+    pub read: Vec<PathBuf>,
+    /// What it wrote, each once.
+    pub written: Vec<PathBuf>,
+}
+
+impl Guarded {
+    /// Files that were used since the command began, by it or by those that ran beside it.
+    pub fn files(&self) -> UsedFiles {
+        let inputs = inputs();
+        let own = |newest: &u64| *newest >= self.number;
+        let read = inputs.files.values().filter(|(newest, _)| own(newest));
+        let written = inputs.written.iter().filter(|(newest, _)| own(newest));
+        let written: BTreeSet<_> = written.map(|(_, path)| path.clone()).collect();
+        let mut read: Vec<PathBuf> = read.map(|(_, path)| path.clone()).collect();
+        read.sort();
+        UsedFiles {
+            read,
+            written: written.into_iter().collect(),
+        }
+    }
+}
+
+/// Notes a file that was written.
+pub fn note_written(path: &Path) {
+    let mut inputs = inputs();
+    if let Some(newest) = inputs.running.last().copied() {
+        inputs.written.push((newest, path.to_path_buf()));
+    }
+}
+
 impl Drop for Guarded {
     fn drop(&mut self) {
         let mut inputs = inputs();
         inputs.running.remove(&self.number);
         let oldest = inputs.running.first().copied().unwrap_or(u64::MAX);
         inputs.files.retain(|_, (newest, _)| *newest >= oldest);
+        inputs.written.retain(|(newest, _)| *newest >= oldest);
         inputs.recordings.retain(|_, (newest, _)| *newest >= oldest);
         inputs.campaigns.retain(|_, (newest, _)| *newest >= oldest);
     }

@@ -1,7 +1,7 @@
 //! The one way out: files that are there whole or not at all, and replace nothing of the user's.
 
 use crate::error::Error;
-use crate::inputs::check_output;
+use crate::inputs::{check_output, note_written};
 use crate::option_value::unusable;
 use crate::written::{PARTIAL, check_written, is_own_file, list_written, list_written_as};
 use std::collections::BTreeSet;
@@ -142,8 +142,9 @@ fn replace(
         written(&partial)?;
         std::fs::rename(&partial, path).map_err(failed)
     });
-    if moved.is_err() {
-        let _ = std::fs::remove_file(&partial);
+    match moved.is_err() {
+        true => drop(std::fs::remove_file(&partial)),
+        false => note_written(path),
     }
     moved
 }
@@ -232,7 +233,9 @@ pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), Error> {
     let written = file.write_all(contents).and_then(|()| file.sync_all());
     let named = written.and_then(|()| give_new_name(&partial, path));
     let _ = std::fs::remove_file(&partial);
-    named.map_err(failed)
+    named.map_err(failed)?;
+    note_written(path);
+    Ok(())
 }
 
 /// Gives a file a name that no other file has; it keeps its own.

@@ -19,7 +19,9 @@
 mod args;
 mod caller;
 mod command;
+mod outcome;
 mod progress;
+mod saying;
 mod show;
 
 pub use crate::caller::{Said, Watch};
@@ -28,9 +30,11 @@ use args::common::{Arguments, Command};
 use args::groups::grouped;
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, FromArgMatches};
+use saying::{Saying, say};
 use std::ffi::OsString;
+use std::time::{Duration, Instant};
 use windfall_files::allowed::{Allowed, allow};
-use windfall_files::inputs::guard_inputs;
+use windfall_files::inputs::{UsedFiles, guard_inputs};
 use windfall_numerics::unit::nearest_name::nearest_names;
 
 /// The program: does what its command line says, and prints.
@@ -118,20 +122,40 @@ fn show_parser(error: &clap::Error) -> u8 {
 
 /// Runs a command, and shows what it returns or why it failed; the exit status.
 fn run(arguments: Arguments) -> u8 {
+    let saying = arguments.saying();
+    say(saying);
     let _allowance = allow(Allowed {
         force: arguments.force,
         also_read: arguments.also_read,
     });
     // A server confines what it writes to its workspace.
     let serves = matches!(arguments.command, Command::Serve(_));
-    let _guarded = (!serves).then(guard_inputs);
-    match run_command(arguments.command) {
+    let guarded = (!serves).then(guard_inputs);
+    let begun = Instant::now();
+    let status = match run_command(arguments.command) {
         Ok(()) => 0,
         Err(error) => {
             show::message(&format!("error: {}", show::with_causes(&error)));
             status_of(&error)
         }
+    };
+    if let (Saying::Much, Some(guarded)) = (saying, guarded) {
+        tell_much(&guarded.files(), begun.elapsed());
     }
+    status
+}
+
+/// Says what a command has read and written, and how long it took.
+fn tell_much(files: &UsedFiles, time: Duration) {
+    for path in &files.read {
+        show::message(&format!("read: {}", path.display()));
+    }
+    for path in &files.written {
+        show::message(&format!("wrote: {}", path.display()));
+    }
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let seconds = time.as_secs_f64();
+    show::message(&format!("took {seconds:.3} s; {threads} processors"));
 }
 
 fn run_command(command: Command) -> anyhow::Result<()> {

@@ -1,6 +1,7 @@
 //! How far the work of a command has come.
 
 use crate::caller::watch;
+use crate::saying::{Saying, saying};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -14,7 +15,7 @@ pub(crate) fn with_bar<T>(work: impl FnOnce(Progress) -> T) -> T {
     }
     let mut bar = ProgressBar::hidden();
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} recordings, {eta} left");
-    if std::io::stderr().is_terminal() {
+    if std::io::stderr().is_terminal() && saying() != Saying::Little {
         bar = ProgressBar::new(0);
         if let Ok(style) = style {
             bar.set_style(style);

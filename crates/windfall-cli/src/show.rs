@@ -1,14 +1,20 @@
 //! Where text goes: results to standard output, messages to standard error, both to a program
 //! that called.
 
-use crate::args::format::Format;
+use crate::args::format::{Format, Shown};
 use crate::caller::take_down;
+use crate::outcome::{Motion, Outcome, WrittenRecordings};
+use crate::saying::{Saying, saying};
+use anyhow::Context;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
+use windfall_files::option_value::unusable;
+use windfall_files::provenance::VERSION;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::quote::{command, path_word};
+use windfall_files::write_file::{check_target, write_whole};
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -22,38 +28,104 @@ pub fn write_result(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Writes a value as indented JSON.
-pub fn write_json<T: serde::Serialize>(value: &T) -> anyhow::Result<()> {
-    write_result(&(serde_json::to_string_pretty(value)? + "\n"))
-}
-
-/// Writes a result in the form that was chosen.
-pub fn show<T: serde::Serialize>(
-    format: Format,
-    outcome: &T,
+/// Does the work of a command and shows its result, also into a file where one is named; a
+/// file that may not be written is refused before the work.
+///
+/// * `work`: what the command does
+/// * `text`, `csv`: its result for people, and as a table
+///
+/// # Errors
+/// Those of the work; the file has no known ending, or cannot be written.
+pub fn show<T: Outcome, E: Into<anyhow::Error>>(
+    shown: &Shown,
+    work: impl FnOnce() -> Result<T, E>,
     text: impl Fn(&T) -> String,
     csv: impl Fn(&T) -> Result<String, Error>,
-) -> anyhow::Result<()> {
-    match format {
-        Format::Json => write_json(outcome),
-        Format::Csv => write_result(&csv(outcome)?),
-        Format::Text => write_result(&text(outcome)),
+) -> anyhow::Result<T> {
+    let kept = shown.out.as_deref();
+    let kept = kept.map(|path| Ok::<_, Error>((path, format_of(path)?)));
+    let kept = kept.transpose()?;
+    let outcome = work().map_err(Into::into)?;
+    let formed = |format| {
+        Ok::<_, anyhow::Error>(match format {
+            Format::Json => json_of(&outcome)?,
+            Format::Csv => csv(&outcome)?,
+            Format::Text => text(&outcome),
+        })
+    };
+    if let Some((path, format)) = kept {
+        write_whole(path, formed(format)?.as_bytes())?;
+        tell_written([path]);
     }
+    write_result(&formed(shown.format)?)?;
+    Ok(outcome)
 }
 
-/// Writes a motion: as text only its summary.
+/// The form of a result in a file, by its ending.
+fn format_of(path: &Path) -> Result<Format, Error> {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let format = match ending.to_str() {
+        Some("csv") => Format::Csv,
+        Some("json") => Format::Json,
+        Some("txt") => Format::Text,
+        _ => {
+            let option = format!("--out {}", path.display());
+            return Err(unusable(
+                option,
+                "expected an ending of .csv, .json or .txt",
+            ));
+        }
+    };
+    check_target(path)?;
+    Ok(format)
+}
+
+/// A result as indented JSON, which begins with the version of windfall and the name of its
+/// schema.
+pub fn json_of<T: Outcome>(outcome: &T) -> anyhow::Result<String> {
+    let text = outcome.json()?;
+    let (_, fields) = text.split_once('{').context("a result is an object")?;
+    let mut head = vec![("schema", T::SCHEMA)];
+    // Some results are kept, and tell themselves what made them. Only keys of the object
+    // itself are indented by two spaces.
+    if !fields.contains("\n  \"windfall\": ") {
+        head.insert(0, ("windfall", VERSION));
+    }
+    let head = head
+        .iter()
+        .map(|(key, value)| format!("\n  \"{key}\": \"{value}\""));
+    let comma = if fields == "}" { "\n" } else { "," };
+    Ok(format!(
+        "{{{}{comma}{fields}\n",
+        head.collect::<Vec<_>>().join(",")
+    ))
+}
+
+/// Shows a motion: as text only its summary.
 pub fn show_motion(
-    format: Format,
+    shown: &Shown,
     (summary, samples): (String, usize),
     json: impl Fn() -> serde_json::Value,
     csv: impl Fn() -> Result<String, Error>,
 ) -> anyhow::Result<()> {
-    match format {
-        Format::Json => write_json(&json()),
-        Format::Csv => write_result(&csv()?),
-        Format::Text => write_result(&format!(
-            "{summary}\nThe motion, {samples} samples: --format csv or json.\n"
-        )),
+    let text =
+        |_: &Motion| format!("{summary}\nThe motion, {samples} samples: --format csv or json.\n");
+    show(shown, || Ok::<_, Error>(Motion(json())), text, |_| csv())?;
+    Ok(())
+}
+
+/// [`message`] of what is useful to know, if the command may say so.
+pub fn note(text: &str) {
+    if saying() != Saying::Little {
+        message(text);
+    }
+}
+
+/// Says which files were written.
+pub fn tell_written<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) {
+    // Who is told much is told of all files in the end.
+    for path in paths.into_iter().filter(|_| saying() != Saying::Much) {
+        note(&format!("written: {}", path.as_ref().display()));
     }
 }
 
@@ -77,30 +149,47 @@ pub fn with_causes(error: &anyhow::Error) -> String {
 }
 
 /// Says what a simulation has written.
-pub fn written(directory: &Path, recordings: usize, format: Format) -> anyhow::Result<()> {
-    let word = path_word(directory);
-    let directory = directory.display();
-    match format {
-        Format::Json => write_json(&serde_json::json!({
-            "directory": directory.to_string(), "recordings": recordings, "simulated": true
-        })),
-        Format::Csv => {
-            let row = vec![directory.to_string(), recordings.to_string()];
-            write_result(&csv_text(&["directory", "recordings"], [row])?)
-        }
-        Format::Text => write_result(&format!(
-            "{recordings} simulated recordings in {directory}\n\nNext:\n  {}\n",
-            command(&["fit", &word])
-        )),
-    }
+///
+/// * `work`: writes recordings into the directory, and says how many
+pub fn show_written<E: Into<anyhow::Error>>(
+    shown: &Shown,
+    directory: &Path,
+    work: impl FnOnce() -> Result<usize, E>,
+) -> anyhow::Result<()> {
+    let work = || {
+        work().map(|recordings| WrittenRecordings {
+            directory: directory.display().to_string(),
+            recordings,
+            simulated: true,
+        })
+    };
+    let csv = |own: &WrittenRecordings| {
+        let row = vec![own.directory.clone(), own.recordings.to_string()];
+        csv_text(&["directory", "recordings"], [row])
+    };
+    let text = |own: &WrittenRecordings| {
+        format!(
+            "{} simulated recordings in {}\n\nNext:\n  {}\n",
+            own.recordings,
+            own.directory,
+            command(&["fit", &path_word(directory)])
+        )
+    };
+    show(shown, work, text, csv)?;
+    Ok(())
 }
 
 /// Names of files as CSV.
 ///
 /// * `column`: name of the column
-pub fn write_names(column: &str, names: &[String]) -> anyhow::Result<()> {
-    let rows = names.iter().map(|name| vec![name.clone()]);
-    write_result(&csv_text(&[column], rows)?)
+pub fn csv_of_names<N: ToString>(
+    column: &str,
+    names: impl IntoIterator<Item = N>,
+) -> Result<String, Error> {
+    csv_text(
+        &[column],
+        names.into_iter().map(|name| vec![name.to_string()]),
+    )
 }
 
 /// Says what was not used; the text shows that itself.

@@ -26,7 +26,16 @@ const NO_FUNCTION: &[(&str, &str)] = &[
 const OTHER_NAMES: &[(&str, &str)] = &[("fit", "fit_campaign")];
 
 /// Arguments that no function takes: every function asks for JSON, and comes to an end.
-const NO_ARGUMENT: &[&str] = &["format", "watch", "help", "version", "force", "also_read"];
+const NO_ARGUMENT: &[&str] = &[
+    "format",
+    "watch",
+    "help",
+    "version",
+    "force",
+    "also_read",
+    "quiet",
+    "verbose",
+];
 
 /// Arguments that name a table: a data frame will do.
 const TABLES: &[(&str, &str)] = &[

@@ -18,6 +18,7 @@ use std::path::Path;
 use windfall_files::confined::discard;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
+use windfall_files::inputs::note_written;
 use windfall_files::provenance::{VERSION, time_now};
 
 /// One run, as it goes into the store.
@@ -125,7 +126,9 @@ fn write(path: &Path, fill: &Fill) -> Result<(), Error> {
     if written.is_err() && new && path.metadata().is_ok_and(|own| own.len() == 0) {
         discard(path);
     }
-    written
+    written?;
+    note_written(path);
+    Ok(())
 }
 
 fn write_into(path: &Path, fill: &Fill) -> Result<(), Error> {

@@ -5,7 +5,7 @@ pub(crate) mod figure;
 pub(crate) mod file;
 pub(crate) mod interval;
 pub(crate) mod laws;
-pub(crate) mod outcome;
+pub mod outcome;
 pub(crate) mod read;
 pub mod run;
 pub mod text;

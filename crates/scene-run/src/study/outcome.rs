@@ -11,6 +11,7 @@ use windfall_files::found::FindingOutcome;
 /// Results of a study; SI throughout.
 #[derive(Clone, Debug, Serialize)]
 pub struct StudyOutcome {
+    /// As the file has it.
     pub title: String,
     /// Version of windfall, and when it ran, UTC.
     pub made: [String; 2],
@@ -24,6 +25,7 @@ pub struct StudyOutcome {
     pub variants: Vec<VariantOutcome>,
     /// What the levels change, against the first of each factor.
     pub effects: Vec<EffectOutcome>,
+    /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
     /// Files written.
     pub files: Vec<PathBuf>,
@@ -32,6 +34,7 @@ pub struct StudyOutcome {
 /// One combination of levels.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct VariantOutcome {
+    /// Names of its levels.
     pub name: String,
     /// Its directory in that of the study.
     pub directory: PathBuf,
@@ -58,6 +61,7 @@ pub struct VariantOutcome {
 pub struct EffectOutcome {
     /// What was varied.
     pub factor: String,
+    /// The level.
     pub level: String,
     /// The level that it is compared with.
     pub against: String,

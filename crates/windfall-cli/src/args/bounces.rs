@@ -1,6 +1,6 @@
 //! `windfall bounces`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::Args;
 use windfall_drop::intervals::request::BouncesRequest;
 
@@ -20,7 +20,6 @@ restitution is not taken across it.")]
 pub struct BouncesArguments {
     #[command(flatten)]
     pub request: BouncesRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

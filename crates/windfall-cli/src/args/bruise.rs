@@ -1,6 +1,6 @@
 //! `windfall bruise`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -26,7 +26,6 @@ pub struct BruiseArguments {
     /// A table of bruises (CSV)
     #[arg(long, value_name = "FILE", conflicts_with = "widths", value_hint = ValueHint::FilePath)]
     pub table: Option<PathBuf>,
-    /// How the result is shown; a table is always CSV
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -1,6 +1,6 @@
 //! `windfall calibrate`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use windfall_drop::calibrate::run::CalibrateRequest;
@@ -29,7 +29,6 @@ pub struct CalibrateArguments {
     pub directory: PathBuf,
     #[command(flatten)]
     pub request: CalibrateRequest,
-    /// Form of the result
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -6,7 +6,7 @@ use crate::args::calibrate::CalibrateArguments;
 use crate::args::compare::{CompareArguments, SummaryArguments};
 use crate::args::design::DesignArguments;
 use crate::args::fit::FitArguments;
-use crate::args::format::Format;
+use crate::args::format::{Format, Shown};
 use crate::args::geometry::{RadiusArguments, TransferArguments};
 use crate::args::laws::LawsArguments;
 use crate::args::plan::PlanArguments;
@@ -17,6 +17,7 @@ use crate::args::scene::SceneCommand;
 use crate::args::serve::ServeArguments;
 use crate::args::simulate::SimulateArguments;
 use crate::args::surface::SurfaceArguments;
+use crate::saying::Saying;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use windfall_campaign::settings::open_options::OpenRequest;
@@ -50,6 +51,23 @@ pub struct Arguments {
     /// (repeatable)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub also_read: Vec<PathBuf>,
+    /// Say nothing beside the result but what went wrong; no progress bar
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Say also which files were read and written, and how long it took
+    #[arg(long, short, global = true, conflicts_with = "quiet")]
+    pub verbose: bool,
+}
+
+impl Arguments {
+    /// How much the command says.
+    pub fn saying(&self) -> Saying {
+        match (self.quiet, self.verbose) {
+            (true, _) => Saying::Little,
+            (false, true) => Saying::Much,
+            (false, false) => Saying::Usual,
+        }
+    }
 }
 
 /// The commands.
@@ -197,9 +215,8 @@ pub enum NewKind {
 pub struct ExplainArguments {
     /// Codes of findings; all if left out
     pub codes: Vec<String>,
-    /// How they are shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall inspect`
@@ -235,9 +252,8 @@ pub struct InspectArguments {
     pub export: Option<PathBuf>,
     #[command(flatten)]
     pub open: OpenRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall card`
@@ -278,9 +294,8 @@ pub enum CardAction {
         /// Evaluate regressions of the library: NAME=VALUE with units, separated by commas
         #[arg(long, value_name = "VALUES", requires = "library", conflicts_with_all = ["laws", "law"])]
         at: Option<String>,
-        /// How the result is shown
-        #[arg(long, value_enum, default_value_t)]
-        format: Format,
+        #[command(flatten)]
+        shown: Shown,
     },
     /// Take a law from one geometry to another by R* and E*
     Transfer(TransferArguments),

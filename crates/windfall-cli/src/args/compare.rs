@@ -1,6 +1,6 @@
 //! `windfall summary` and `windfall compare`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::Args;
 use windfall_tables::compare::agreement::AgreementRequest;
 use windfall_tables::compare::run::CompareRequest;
@@ -14,9 +14,8 @@ use windfall_tables::compare::summary::SummaryRequest;
 pub struct SummaryArguments {
     #[command(flatten)]
     pub request: SummaryRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall compare`
@@ -35,7 +34,6 @@ pub struct CompareArguments {
     pub request: CompareRequest,
     #[command(flatten)]
     pub agreement: Option<AgreementRequest>,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -1,6 +1,6 @@
 //! `windfall radius` and `windfall card transfer`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::Args;
 use windfall_cards::geometry::RadiusRequest;
 use windfall_cards::transfer::TransferRequest;
@@ -16,9 +16,8 @@ specimens.csv do the same for every fruit of a campaign.")]
 pub struct RadiusArguments {
     #[command(flatten)]
     pub request: RadiusRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall card transfer`
@@ -35,7 +34,6 @@ pub struct RadiusArguments {
 pub struct TransferArguments {
     #[command(flatten)]
     pub request: TransferRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -1,6 +1,6 @@
 //! `windfall laws`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use windfall_draw::files::FigureFolder;
@@ -40,7 +40,6 @@ pub struct LawsArguments {
     /// Threads; all cores if left out
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// Form of the result
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -1,6 +1,6 @@
 //! `windfall plan`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::{Args, Subcommand};
 use windfall_plan::achieved::request::AchievedRequest;
 use windfall_plan::closed::request::{DifferenceRequest, GroupsRequest, MeanRequest, SlopeRequest};
@@ -85,7 +85,6 @@ Examples:
 pub struct QuestionArguments<Question: Args> {
     #[command(flatten)]
     pub request: Question,
-    /// How the plan is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

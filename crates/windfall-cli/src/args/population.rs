@@ -1,6 +1,6 @@
 //! `windfall population`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -59,7 +59,6 @@ pub struct PopulationArguments {
     /// Number of threads; all cores if left out. It never changes a result
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

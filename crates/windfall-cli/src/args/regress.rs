@@ -1,6 +1,6 @@
 //! `windfall regress`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::Args;
 use windfall_tables::regress::request::RegressRequest;
 
@@ -19,7 +19,6 @@ in their names stand in backticks. Columns of text are categories.")]
 pub struct RegressArguments {
     #[command(flatten)]
     pub request: RegressRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -1,6 +1,6 @@
 //! `windfall simulate`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::{Format, Shown};
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 use windfall_simulate::compression::SimulateCompressionRequest;
@@ -97,9 +97,8 @@ pub struct SimulateImpactArguments {
     /// data (CSV, same name)
     #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
     pub plot: Option<PathBuf>,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall simulate pendulum`
@@ -118,9 +117,8 @@ pub struct SimulateImpactArguments {
 pub struct SimulatePendulumArguments {
     #[command(flatten)]
     pub request: PendulumRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall simulate carriage`
@@ -136,9 +134,8 @@ pub struct SimulatePendulumArguments {
 pub struct SimulateCarriageArguments {
     #[command(flatten)]
     pub request: CarriageRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }
 
 /// `windfall simulate drop`
@@ -179,7 +176,6 @@ pub struct SimulateDropArguments {
     pub eccentric: EccentricRequest,
     #[command(flatten)]
     pub recordings: SimulateDropsRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -1,6 +1,6 @@
 //! `windfall surface`: arguments.
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use clap::Args;
 use windfall_tables::surface::request::SurfaceRequest;
 
@@ -26,7 +26,6 @@ importance X, separated by commas; low and high are the observed ends unless giv
 pub struct SurfaceArguments {
     #[command(flatten)]
     pub request: SurfaceRequest,
-    /// How the result is shown
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    #[command(flatten)]
+    pub shown: Shown,
 }

@@ -7,6 +7,7 @@ use windfall_drop::intervals::text::{csv_of_bounces, text_of_bounces};
 
 /// Restitution from the times between impacts.
 pub fn run(arguments: &BouncesArguments) -> anyhow::Result<()> {
-    let outcome = bounces(&arguments.request)?;
-    show(arguments.format, &outcome, text_of_bounces, csv_of_bounces)
+    let work = || bounces(&arguments.request);
+    show(&arguments.shown, work, text_of_bounces, csv_of_bounces)?;
+    Ok(())
 }

@@ -9,14 +9,15 @@ use windfall_drop::calibrate::text::{csv_of_calibration, text_of_calibration};
 /// Calibrates the law of a drop campaign.
 pub fn run(arguments: &CalibrateArguments) -> anyhow::Result<()> {
     let (directory, request) = (&arguments.directory, &arguments.request);
-    let outcome = with_bar(|progress| calibrate(directory, request, progress));
-    let outcome = outcome.map_err(tell_failures)?;
-    show(
-        arguments.format,
-        &outcome,
+    let outcome = show(
+        &arguments.shown,
+        || {
+            let outcome = with_bar(|progress| calibrate(directory, request, progress));
+            outcome.map_err(tell_failures)
+        },
         text_of_calibration,
         csv_of_calibration,
     )?;
-    tell_unused(arguments.format, &outcome.failed);
+    tell_unused(arguments.shown.format, &outcome.failed);
     Ok(())
 }

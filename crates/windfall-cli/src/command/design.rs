@@ -2,9 +2,9 @@
 
 use crate::args::design::{DesignArguments, DesignCommand};
 use crate::args::format::Format;
-use crate::show::{message, write_json, write_result};
+use crate::show::{note, show, tell_written};
 use windfall_files::write_file::check_outputs;
-use windfall_tables::design::document::design_document;
+use windfall_tables::design::document::{DesignDocument, design_document};
 use windfall_tables::design::file::{save_design, write_design};
 use windfall_tables::design::request::{Criterion, DesignKind};
 use windfall_tables::design::run::make_design;
@@ -35,21 +35,20 @@ pub fn run(arguments: &DesignArguments) -> anyhow::Result<()> {
     let outcome = make_design(&kind, &options.request)?;
     if let Some(path) = &options.out {
         save_design(path, &outcome.design, &outcome.about)?;
-        message(&format!("written: {}", path.display()));
+        tell_written([path]);
     }
     let format = match (options.format, &options.out) {
         (Some(format), _) => format,
         (None, Some(_)) => Format::Text,
         (None, None) => Format::Csv,
     };
-    match format {
-        Format::Text => write_result(&text_of_design(&outcome)),
-        Format::Json => write_json(&design_document(&outcome)),
-        Format::Csv => {
-            for finding in &outcome.design.findings {
-                message(&format!("note: {finding}"));
-            }
-            write_result(&write_design(&outcome.design, &outcome.about)?)
+    if format == Format::Csv {
+        for finding in &outcome.design.findings {
+            note(&format!("note: {finding}"));
         }
     }
+    let document = || Ok::<_, anyhow::Error>(design_document(&outcome));
+    let csv = |_: &DesignDocument| write_design(&outcome.design, &outcome.about);
+    show(&format.into(), document, |_| text_of_design(&outcome), csv)?;
+    Ok(())
 }

@@ -1,23 +1,24 @@
 //! `windfall explain`
 
 use crate::args::common::ExplainArguments;
-use crate::args::format::Format;
-use crate::show::{write_json, write_result};
+use crate::outcome::Explanations;
+use crate::show::show;
+use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_report::explain::{explain, text_of_explanations};
 
 /// Shows what findings mean and what to do.
 pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
-    let found = explain(&arguments.codes)?;
-    match arguments.format {
-        Format::Text => write_result(&text_of_explanations(&found)),
-        Format::Json => write_json(&found),
-        Format::Csv => {
-            let header = ["code", "section", "meaning", "advice"].map(str::to_owned);
-            let rows = found
-                .into_iter()
-                .map(|one| vec![one.code, one.section, one.meaning, one.advice]);
-            write_result(&csv_text(&header, rows)?)
-        }
-    }
+    let work = || explain(&arguments.codes).map(|findings| Explanations { findings });
+    let text = |own: &Explanations| text_of_explanations(&own.findings);
+    show(&arguments.shown, work, text, csv)?;
+    Ok(())
+}
+
+fn csv(found: &Explanations) -> Result<String, Error> {
+    let rows = found.findings.iter().map(|one| {
+        let cells = [&one.code, &one.section, &one.meaning, &one.advice];
+        cells.map(Clone::clone).to_vec()
+    });
+    csv_text(&["code", "section", "meaning", "advice"], rows)
 }

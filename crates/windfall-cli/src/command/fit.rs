@@ -3,9 +3,7 @@
 use crate::args::fit::FitArguments;
 use crate::args::format::Format;
 use crate::progress::with_bar;
-use crate::show::{
-    message, show, tell_failures, tell_unused, write_json, write_names, write_result,
-};
+use crate::show::{csv_of_names, message, note, show, tell_failures, tell_unused, write_result};
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
 use windfall_campaign::impacts::shard::{ShardOutcome, fit_shard};
@@ -29,7 +27,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     let out = out.map(|path| Ok::<_, Error>((path, Form::of_path("--out", path)?)));
     let out = out.transpose()?;
     if arguments.watch {
-        message(&format!("watching {}/raw; Ctrl-C ends it", path.display()));
+        note(&format!("watching {}/raw; Ctrl-C ends it", path.display()));
         watch(
             path,
             request,
@@ -52,22 +50,28 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     if let (Some(shard), Some((out, _))) = (arguments.shard, out) {
-        let outcome = with_bar(|progress| fit_shard(path, request, shard, out, progress));
-        return show_shard(arguments.format, &outcome.map_err(tell_failures)?);
+        let work = || {
+            let outcome = with_bar(|progress| fit_shard(path, request, shard, out, progress));
+            outcome.map_err(tell_failures)
+        };
+        let csv = |own: &ShardOutcome| csv_of_names("file", [own.file.display()]);
+        let outcome = show(&arguments.format.into(), work, text_of_shard, csv)?;
+        tell_unused(Format::Json, &outcome.failed);
+        return Ok(());
     }
-    let outcome = with_bar(|progress| match &arguments.recording {
-        Some(recording) => fit_recording(path, recording, request, progress)
-            .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
-        None => fit_any(path, request, progress),
-    });
-    let outcome = outcome.map_err(tell_failures)?;
-    if let Some((path, form)) = out {
-        write_any(path, form, &outcome)?;
-    }
-    match arguments.format {
-        Format::Json => write_result(&(outcome.json()? + "\n"))?,
-        other => show(other, &outcome, text_of_any, csv_of_any)?,
-    }
+    let work = || {
+        let outcome = with_bar(|progress| match &arguments.recording {
+            Some(recording) => fit_recording(path, recording, request, progress)
+                .map(|outcome| AnyOutcome::Impacts(Box::new(outcome))),
+            None => fit_any(path, request, progress),
+        });
+        let outcome = outcome.map_err(tell_failures)?;
+        if let Some((path, form)) = out {
+            write_any(path, form, &outcome)?;
+        }
+        Ok::<_, Error>(outcome)
+    };
+    let outcome = show(&arguments.format.into(), work, text_of_any, csv_of_any)?;
     // The text shows failures itself, beside the results.
     let told = if arguments.format == Format::Text {
         &[][..]
@@ -86,25 +90,20 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         .into());
     }
     if arguments.recording.is_none() {
-        message(&status_line(outcome.status()));
+        note(&status_line(outcome.status()));
     }
     Ok(())
 }
 
 /// Says what became of a part of a campaign.
-fn show_shard(format: Format, outcome: &ShardOutcome) -> anyhow::Result<()> {
-    tell_unused(Format::Json, &outcome.failed);
-    let file = outcome.file.display().to_string();
-    match format {
-        Format::Json => write_json(outcome),
-        Format::Csv => write_names("file", &[file]),
-        Format::Text => write_result(&format!(
-            "{} impacts: {} rows; {} could not be fitted.\n\nWritten: {file}\n",
-            outcome.impacts,
-            outcome.rows,
-            outcome.failed.len()
-        )),
-    }
+fn text_of_shard(outcome: &ShardOutcome) -> String {
+    format!(
+        "{} impacts: {} rows; {} could not be fitted.\n\nWritten: {}\n",
+        outcome.impacts,
+        outcome.rows,
+        outcome.failed.len(),
+        outcome.file.display()
+    )
 }
 
 fn status_line(status: &windfall_campaign::result::outcome::StatusOutcome) -> String {

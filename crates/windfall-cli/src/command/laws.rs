@@ -22,8 +22,8 @@ pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
         threads: arguments.threads,
         ..FitRequest::default()
     };
-    let outcome = with_bar(|progress| rank_campaign(&arguments.directory, &request, progress))?;
-    show(arguments.format, &outcome, text_of_laws, csv_of_laws)?;
-    tell_unused(arguments.format, &outcome.failed);
+    let work = || with_bar(|progress| rank_campaign(&arguments.directory, &request, progress));
+    let outcome = show(&arguments.shown, work, text_of_laws, csv_of_laws)?;
+    tell_unused(arguments.shown.format, &outcome.failed);
     Ok(())
 }

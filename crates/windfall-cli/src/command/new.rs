@@ -1,14 +1,14 @@
 //! `windfall new`
 
 use crate::args::common::{NewArguments, NewKind};
-use crate::args::format::Format;
-use crate::show::{write_json, write_names, write_result};
+use crate::outcome::WrittenFiles;
+use crate::show::{csv_of_names, show};
 use windfall_campaign::settings::template::{
     TemplateKind, write_scene_template, write_study_template, write_template,
 };
 use windfall_files::option_value::unusable;
 use windfall_files::text::quote::{command, path_word};
-use windfall_inspect::gather::new::gather;
+use windfall_inspect::gather::new::{Gathered, gather};
 use windfall_inspect::gather::preset::preset_of;
 use windfall_inspect::gather::text::{csv_of_gathered, text_of_gathered};
 
@@ -32,12 +32,10 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
             return Err(unusable(format!("--from {}", from.display()), problem).into());
         };
         let preset = arguments.preset.as_deref().map(preset_of).transpose()?;
-        let gathered = gather(kind, directory, from, names, preset.as_ref())?;
-        return match arguments.format {
-            Format::Json => write_json(&gathered),
-            Format::Csv => write_result(&csv_of_gathered(&gathered)?),
-            Format::Text => write_result(&text_of_gathered(&gathered, directory)),
-        };
+        let work = || gather(kind, directory, from, names, preset.as_ref());
+        let text = |own: &Gathered| text_of_gathered(own, directory);
+        show(&arguments.format.into(), work, text, csv_of_gathered)?;
+        return Ok(());
     }
     let study = matches!(arguments.kind, NewKind::SceneStudy);
     let on_file = |word: &str, name: &str| {
@@ -61,13 +59,15 @@ pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
             format!("edit the file, then\n  {}", on_file("run", "scene.toml")),
         ),
     };
-    let names: Vec<String> = written
-        .iter()
-        .map(|path| path.display().to_string())
-        .collect();
-    match arguments.format {
-        Format::Json => write_json(&serde_json::json!({ "written": names })),
-        Format::Csv => write_names("written", &names),
-        Format::Text => write_result(&format!("{}\n\nNext: {next}\n", names.join("\n"))),
-    }
+    let names = written.iter().map(|path| path.display().to_string());
+    let files = WrittenFiles {
+        written: names.collect(),
+    };
+    show(
+        &arguments.format.into(),
+        || Ok::<_, anyhow::Error>(files),
+        |own| format!("{}\n\nNext: {next}\n", own.written.join("\n")),
+        |own| csv_of_names("written", &own.written),
+    )?;
+    Ok(())
 }

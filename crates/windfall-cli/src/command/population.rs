@@ -3,9 +3,11 @@
 use crate::args::format::Format;
 use crate::args::population::PopulationArguments;
 use crate::progress::with_bar;
-use crate::show::{message, tell_failures, write_json, write_result};
+use crate::show::{message, show, tell_failures};
 use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_cards::read_card::write_card;
+use windfall_files::error::Error;
+use windfall_files::progress::quiet;
 use windfall_population::card::card_of_population;
 use windfall_population::run::{PopulationRequest, population};
 use windfall_population::text::{csv_of_population, text_of_population};
@@ -32,20 +34,24 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         detail: arguments.detail.clone(),
         card: arguments.card.clone(),
     };
-    let outcome = with_bar(|progress| population(&request, progress)).map_err(tell_failures)?;
-    if let Some(path) = &request.card {
-        write_card(
-            path,
-            &card_of_population(&request, &outcome, &windfall_files::progress::quiet)?,
-        )?;
-    }
-    match arguments.format {
-        Format::Json => write_json(&outcome)?,
-        Format::Csv => write_result(&csv_of_population(&outcome)?)?,
-        Format::Text => return write_result(&text_of_population(&outcome)),
-    }
-    for failure in &outcome.failed {
-        message(&format!("left out: {}: {}", failure.id, failure.message));
+    let work = || {
+        let outcome = with_bar(|progress| population(&request, progress)).map_err(tell_failures)?;
+        if let Some(path) = &request.card {
+            write_card(path, &card_of_population(&request, &outcome, &quiet)?)?;
+        }
+        Ok::<_, Error>(outcome)
+    };
+    let outcome = show(
+        &arguments.shown,
+        work,
+        text_of_population,
+        csv_of_population,
+    )?;
+    // The text shows them itself.
+    if arguments.shown.format != Format::Text {
+        for failure in &outcome.failed {
+            message(&format!("left out: {}: {}", failure.id, failure.message));
+        }
     }
     Ok(())
 }

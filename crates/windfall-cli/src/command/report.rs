@@ -1,11 +1,11 @@
 //! `windfall report`
 
-use crate::args::format::Format;
 use crate::args::report::ReportArguments;
 use crate::progress::with_bar;
-use crate::show::{tell_failures, write_json, write_names, write_result};
+use crate::show::{csv_of_names, show, tell_failures};
 use windfall_campaign::pipeline::request::FitRequest;
-use windfall_report::run::{ReportRequest, report_campaign};
+use windfall_files::progress::Progress;
+use windfall_report::run::{ReportOutcome, ReportRequest, report_campaign};
 
 /// Writes the report of a campaign and says which files it is.
 pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
@@ -21,26 +21,24 @@ pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
         out: arguments.out.clone(),
         theme: arguments.theme,
     };
-    let outcome = with_bar(|progress| report_campaign(&arguments.directory, &request, progress));
-    let outcome = outcome.map_err(tell_failures)?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => {
-            let files = outcome.files.iter();
-            let names: Vec<String> = files.map(|file| file.display().to_string()).collect();
-            write_names("file", &names)
-        }
-        Format::Text => {
-            let failed = match outcome.failed {
-                0 => String::new(),
-                n => format!("; {n} could not be fitted, the page says why"),
-            };
-            write_result(&format!(
-                "{}: {} results, {} files{failed}\n",
-                outcome.page.display(),
-                outcome.impacts,
-                outcome.files.len()
-            ))
-        }
-    }
+    let work = || {
+        let report = |progress: Progress| report_campaign(&arguments.directory, &request, progress);
+        with_bar(report).map_err(tell_failures)
+    };
+    let text = |outcome: &ReportOutcome| {
+        let failed = match outcome.failed {
+            0 => String::new(),
+            n => format!("; {n} could not be fitted, the page says why"),
+        };
+        let (page, files) = (outcome.page.display(), outcome.files.len());
+        format!(
+            "{page}: {} results, {files} files{failed}\n",
+            outcome.impacts
+        )
+    };
+    let csv = |outcome: &ReportOutcome| {
+        csv_of_names("file", outcome.files.iter().map(|file| file.display()))
+    };
+    show(&arguments.format.into(), work, text, csv)?;
+    Ok(())
 }

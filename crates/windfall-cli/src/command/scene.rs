@@ -1,21 +1,20 @@
 //! `windfall scene`
 
-use crate::args::format::Format;
 use crate::args::scene::{
     ExportName, SceneCommand, SceneExportArguments, SceneRunArguments, SceneStudyArguments,
 };
 use crate::caller::watch;
 use crate::command::scene_view;
 use crate::progress::with_bar;
-use crate::show::{show, write_json, write_result};
+use crate::show::show;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use windfall_engines::contacts::export_contacts;
+use windfall_engines::contacts::{ContactsOutcome, export_contacts};
 use windfall_engines::parameters::Other;
 use windfall_engines::ranks::follow::run_rank;
-use windfall_engines::run::{EngineRequest, export_deck, run_on_engine};
+use windfall_engines::run::{DeckOutcome, EngineRequest, export_deck, run_on_engine};
 use windfall_engines::text::{text_of_contacts, text_of_deck};
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::run::stopped::SceneStart;
@@ -55,20 +54,19 @@ fn export(arguments: &SceneExportArguments) -> anyhow::Result<()> {
             "--speed {speed}: a speed above zero, in m/s"
         );
     }
-    let outcome = export_contacts(&arguments.file, other, arguments.out.as_deref(), speed)?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        _ => write_result(&text_of_contacts(&outcome)),
-    }
+    let (file, out) = (&arguments.file, arguments.out.as_deref());
+    let work = || export_contacts(file, other, out, speed);
+    let csv = |own: &ContactsOutcome| Ok(text_of_contacts(own));
+    show(&arguments.format.into(), work, text_of_contacts, csv)?;
+    Ok(())
 }
 
 fn deck(arguments: &SceneExportArguments, engine: Engine) -> anyhow::Result<()> {
     let (file, out) = (&arguments.file, arguments.out.as_deref());
-    let outcome = export_deck(file, engine, &arguments.deck, out)?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        _ => write_result(&text_of_deck(&outcome)),
-    }
+    let work = || export_deck(file, engine, &arguments.deck, out);
+    let csv = |own: &DeckOutcome| Ok(text_of_deck(own));
+    show(&arguments.format.into(), work, text_of_deck, csv)?;
+    Ok(())
 }
 
 fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
@@ -89,14 +87,17 @@ fn run_one(arguments: &SceneRunArguments) -> anyhow::Result<()> {
         true => Arc::default(),
         false => interruption(),
     };
-    let outcome = with_bar(|shown| {
-        let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => shown(done, all),
-        };
-        run_on_engine(&arguments.file, &request, &engine, &progress)
-    })?;
-    show(arguments.format, &outcome, text_of_scene, csv_of_scene)
+    let work = || {
+        with_bar(|shown| {
+            let progress = |done, all| match interrupted.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => shown(done, all),
+            };
+            run_on_engine(&arguments.file, &request, &engine, &progress)
+        })
+    };
+    show(&arguments.format.into(), work, text_of_scene, csv_of_scene)?;
+    Ok(())
 }
 
 /// The command itself, which ranks start: this program, or the script that an interpreter runs.
@@ -109,6 +110,7 @@ fn command() -> Option<PathBuf> {
 
 fn run_variants(arguments: &SceneStudyArguments) -> anyhow::Result<()> {
     let (file, request) = (&arguments.file, &arguments.request);
-    let outcome = with_bar(|progress| run_study(file, request, progress))?;
-    show(arguments.format, &outcome, text_of_study, csv_of_study)
+    let work = || with_bar(|progress| run_study(file, request, progress));
+    show(&arguments.format.into(), work, text_of_study, csv_of_study)?;
+    Ok(())
 }

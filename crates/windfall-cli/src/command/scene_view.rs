@@ -1,12 +1,13 @@
 //! `windfall scene picture`, `windfall scene vtk` and `windfall scene table`
 
-use crate::args::format::Format;
 use crate::args::scene_view::{ScenePictureArguments, SceneTableArguments, SceneVtkArguments};
 use crate::progress::with_bar;
-use crate::show::{write_json, write_names, write_result};
+use crate::show::{csv_of_names, show};
 use windfall_files::option_value::{positive, quantity, unusable};
-use windfall_scene_run::frames::table::table_of_scene;
-use windfall_scene_run::frames::view::{PictureRequest, draw_scene, vtk_of_scene};
+use windfall_scene_run::frames::table::{TableOutcome, table_of_scene};
+use windfall_scene_run::frames::view::{
+    PictureOutcome, PictureRequest, VtkOutcome, draw_scene, vtk_of_scene,
+};
 
 /// Draws a scene.
 pub fn picture(arguments: &ScenePictureArguments) -> anyhow::Result<()> {
@@ -21,21 +22,15 @@ pub fn picture(arguments: &ScenePictureArguments) -> anyhow::Result<()> {
         theme: arguments.theme,
         out: arguments.out.clone(),
     };
-    let outcome = draw_scene(&arguments.run, &request)?;
-    let files: Vec<String> = outcome
-        .files
-        .iter()
-        .map(|file| file.display().to_string())
-        .collect();
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_names("file", &files),
-        Format::Text => write_result(&format!(
-            "{}\n\nWritten: {}\n",
-            outcome.caption,
-            files.join(", ")
-        )),
-    }
+    let work = || draw_scene(&arguments.run, &request);
+    let text = |own: &PictureOutcome| {
+        let files = own.files.iter().map(|file| file.display().to_string());
+        let files = files.collect::<Vec<_>>().join(", ");
+        format!("{}\n\nWritten: {files}\n", own.caption)
+    };
+    let csv = |own: &PictureOutcome| csv_of_names("file", own.files.iter().map(|f| f.display()));
+    show(&arguments.format.into(), work, text, csv)?;
+    Ok(())
 }
 
 /// Azimuth and elevation; rad.
@@ -54,30 +49,29 @@ fn angles(text: &str) -> Result<[f64; 2], windfall_files::error::Error> {
 /// Writes files for ParaView.
 pub fn vtk(arguments: &SceneVtkArguments) -> anyhow::Result<()> {
     let out = arguments.out.as_deref();
-    let outcome = with_bar(|progress| vtk_of_scene(&arguments.run, out, progress))?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_names("file", &[outcome.collection.display().to_string()]),
-        Format::Text => write_result(&format!(
-            "{} frames. Open this one in ParaView; {} files lie beside it.\n\nWritten: {}\n",
-            outcome.frames,
-            outcome.files,
-            outcome.collection.display()
-        )),
-    }
+    let work = || with_bar(|progress| vtk_of_scene(&arguments.run, out, progress));
+    let text = |own: &VtkOutcome| {
+        let (frames, files) = (own.frames, own.files);
+        let written = own.collection.display();
+        format!(
+            "{frames} frames. Open this one in ParaView; {files} files lie beside it.\n\n\
+             Written: {written}\n"
+        )
+    };
+    let csv = |own: &VtkOutcome| csv_of_names("file", [own.collection.display()]);
+    show(&arguments.format.into(), work, text, csv)?;
+    Ok(())
 }
 
 /// Writes a table for other programs.
 pub fn table(arguments: &SceneTableArguments) -> anyhow::Result<()> {
     let (run, table, out) = (&arguments.run, arguments.table, &arguments.out);
-    let outcome = with_bar(|progress| table_of_scene(run, table, out, progress))?;
-    match arguments.format {
-        Format::Json => write_json(&outcome),
-        Format::Csv => write_names("file", &[outcome.file.display().to_string()]),
-        Format::Text => write_result(&format!(
-            "{} rows.\n\nWritten: {}\n",
-            outcome.rows,
-            outcome.file.display()
-        )),
-    }
+    let work = || with_bar(|progress| table_of_scene(run, table, out, progress));
+    let text = |own: &TableOutcome| {
+        let (rows, file) = (own.rows, own.file.display());
+        format!("{rows} rows.\n\nWritten: {file}\n")
+    };
+    let csv = |own: &TableOutcome| csv_of_names("file", [own.file.display()]);
+    show(&arguments.format.into(), work, text, csv)?;
+    Ok(())
 }

@@ -1,13 +1,14 @@
 //! `windfall simulate`
 
-use crate::args::format::Format;
+use crate::args::format::Shown;
 use crate::args::simulate::{
     SimulateArguments, SimulateCarriageArguments, SimulateCompressionArguments, SimulateEvent,
     SimulateImpactArguments, SimulatePendulumArguments, SimulateRepeatsArguments,
     SimulateTapArguments,
 };
-use crate::show::{message, show, show_motion, write_result, written};
+use crate::show::{show, show_motion, show_written, tell_written, write_result};
 use std::path::Path;
+use windfall_files::error::Error;
 use windfall_files::text::quote::{command, path_word};
 use windfall_simulate::compression::simulate_compression;
 use windfall_simulate::example::write_example;
@@ -56,31 +57,29 @@ fn next(directory: &Path, files: usize) -> anyhow::Result<()> {
 }
 
 fn repeats(arguments: &SimulateRepeatsArguments) -> anyhow::Result<()> {
-    let recordings = simulate_repeats(&arguments.directory, &arguments.request)?;
-    written(&arguments.directory, recordings, arguments.format)
+    let work = || simulate_repeats(&arguments.directory, &arguments.request);
+    show_written(&arguments.format.into(), &arguments.directory, work)
 }
 
 fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
     let event = impact_event(&arguments.request)?;
-    let impact = impact_of_event(&event)?;
-    if let Some(path) = &arguments.plot {
-        for written in write_impact_figure(path, &event)? {
-            message(&format!("written: {}", written.display()));
+    let work = || {
+        let impact = impact_of_event(&event)?;
+        if let Some(path) = &arguments.plot {
+            tell_written(write_impact_figure(path, &event)?);
         }
-    }
-    show(
-        arguments.format,
-        &impact,
-        text_of_simulation,
-        csv_of_simulation,
-    )
+        Ok::<_, Error>(impact)
+    };
+    let shown = &arguments.shown;
+    show(shown, work, text_of_simulation, csv_of_simulation)?;
+    Ok(())
 }
 
 fn carriage(arguments: &SimulateCarriageArguments) -> anyhow::Result<()> {
     let request = &arguments.request;
     let event = carriage_event(request)?;
     let Some(directory) = &request.recordings else {
-        return motion(&event, &request.rate, arguments.format);
+        return motion(&event, &request.rate, &arguments.shown);
     };
     let mut sensors = request.sensors.clone();
     if sensors.is_empty() {
@@ -92,30 +91,30 @@ fn carriage(arguments: &SimulateCarriageArguments) -> anyhow::Result<()> {
         false => Weighed::Given,
     };
     let (specimens, drawn) = (&request.specimens, (weighed, request.seed));
-    let count = simulate_recordings(&event, instrument, specimens, drawn, directory)?;
-    written(directory, count, arguments.format)
+    let work = || simulate_recordings(&event, instrument, specimens, drawn, directory);
+    show_written(&arguments.shown, directory, work)
 }
 
 fn pendulum(arguments: &SimulatePendulumArguments) -> anyhow::Result<()> {
     let request = &arguments.request;
     if let Some(directory) = &request.example {
-        let recordings = write_example(directory, request.seed)?;
-        return written(directory, recordings, arguments.format);
+        let work = || write_example(directory, request.seed);
+        return show_written(&arguments.shown, directory, work);
     }
     let event = pendulum_event(request)?;
     let Some(directory) = &request.recordings else {
-        return motion(&event, &request.instrument.rate, arguments.format);
+        return motion(&event, &request.instrument.rate, &arguments.shown);
     };
     let instrument = instrument_of_pendulum(&request.instrument, &event)?;
     let (specimens, drawn) = (&request.specimens, (Weighed::Given, request.seed));
-    let count = simulate_recordings(&event, instrument, specimens, drawn, directory)?;
-    written(directory, count, arguments.format)
+    let work = || simulate_recordings(&event, instrument, specimens, drawn, directory);
+    show_written(&arguments.shown, directory, work)
 }
 
-fn motion(event: &Event, rate: &str, format: Format) -> anyhow::Result<()> {
+fn motion(event: &Event, rate: &str, shown: &Shown) -> anyhow::Result<()> {
     let motion = motion_of_event(event, rate)?;
     show_motion(
-        format,
+        shown,
         (
             text_of_simulation(&motion.impact),
             motion.trajectory.times.len(),

@@ -1,8 +1,9 @@
 //! `windfall simulate drop`
 
 use crate::args::simulate::SimulateDropArguments;
-use crate::show::{show, show_motion, written};
+use crate::show::{show, show_motion, show_written};
 use std::path::Path;
+use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_simulate::drop::{simulate_drop_motion, simulate_one_drop};
 use windfall_simulate::drop_text::{
@@ -31,15 +32,16 @@ pub fn run(arguments: &SimulateDropArguments) -> anyhow::Result<()> {
 }
 
 fn one(plan: &DropPlan, arguments: &SimulateDropArguments) -> anyhow::Result<()> {
-    let drop = simulate_one_drop(plan)?;
-    show(arguments.format, &drop, text_of_drop, csv_of_drop)
+    let work = || simulate_one_drop(plan);
+    show(&arguments.shown, work, text_of_drop, csv_of_drop)?;
+    Ok(())
 }
 
 fn motion(plan: &DropPlan, arguments: &SimulateDropArguments, rate: &str) -> anyhow::Result<()> {
     let duration = arguments.duration.as_deref();
     let motion = simulate_drop_motion(plan, rate, duration)?;
     show_motion(
-        arguments.format,
+        &arguments.shown,
         (text_of_drop(&motion.drop), motion.trajectory.times.len()),
         || json_of_drop_motion(&motion),
         || csv_of_drop_motion(&motion),
@@ -58,8 +60,8 @@ fn recordings(
     if let Some(duration) = &arguments.duration {
         request.duration.clone_from(duration);
     }
-    let count = simulate_drops(directory, plan, &request)?;
-    written(directory, count, arguments.format)
+    let work = || simulate_drops(directory, plan, &request);
+    show_written(&arguments.shown, directory, work)
 }
 
 /// Simulates one drop of a planar body.
@@ -73,11 +75,12 @@ fn eccentric(plan: &DropPlan, arguments: &SimulateDropArguments) -> anyhow::Resu
     let drop = simulate_one_eccentric_drop(plan, &body)?;
     let Some(rate) = &arguments.sampling_rate else {
         let (text, csv) = (text_of_eccentric_drop, csv_of_eccentric_drop);
-        return show(arguments.format, &drop, text, csv);
+        show(&arguments.shown, || Ok::<_, Error>(drop), text, csv)?;
+        return Ok(());
     };
     let motion = eccentric_motion(plan, &body, &drop, rate, arguments.duration.as_deref())?;
     show_motion(
-        arguments.format,
+        &arguments.shown,
         (text_of_eccentric_drop(&drop), motion.times.len()),
         || json_of_eccentric_motion(&drop, &motion),
         || csv_of_eccentric_motion(&motion),

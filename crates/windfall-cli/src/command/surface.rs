@@ -7,6 +7,7 @@ use windfall_tables::surface::text::{csv_of_surface, text_of_surface};
 
 /// Response surfaces of a table of runs.
 pub fn run(arguments: &SurfaceArguments) -> anyhow::Result<()> {
-    let outcome = surface(&arguments.request)?;
-    show(arguments.format, &outcome, text_of_surface, csv_of_surface)
+    let work = || surface(&arguments.request);
+    show(&arguments.shown, work, text_of_surface, csv_of_surface)?;
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! No output replaces an input, and hostile files do no harm.
 
+mod forms;
 #[allow(dead_code)]
 mod options;
 mod replaced;

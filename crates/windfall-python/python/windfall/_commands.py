@@ -148,6 +148,7 @@ def inspect(
     comment: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     footer: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -175,6 +176,7 @@ def inspect(
     * `missing`: A word or number that stands for a missing sample, beside the usual words (NaN,
       N/A, OVLD, …); may be repeated
     * `footer`: Lines at the end of a text that are not rows of numbers [default: 0]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "inspect",
@@ -194,6 +196,7 @@ def inspect(
             "--comment": comment,
             "--missing": missing,
             "--footer": footer,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -374,6 +377,7 @@ def laws(
     theme: Literal["light", "dark"] | None = None,
     refit: bool = False,
     threads: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -392,6 +396,7 @@ def laws(
     * `theme`: Colours of the figures [default: light]
     * `refit`: Find the answer anew, even where nothing has changed since it was found
     * `threads`: Threads; all cores if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "laws",
@@ -404,6 +409,7 @@ def laws(
             "--theme": theme,
             "--refit": refit,
             "--threads": threads,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -425,6 +431,7 @@ def population(
     card: Path | None = None,
     refit: bool = False,
     threads: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -446,6 +453,7 @@ def population(
     * `card`: Write the population as a law card (TOML, or JSON where the name ends with .json)
     * `refit`: Find the answer anew, even where nothing has changed since it was found
     * `threads`: Number of threads; all cores if left out. It never changes a result
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "population",
@@ -461,6 +469,7 @@ def population(
             "--card": card,
             "--refit": refit,
             "--threads": threads,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -526,6 +535,7 @@ def calibrate(
     card: Path | None = None,
     profile: bool = False,
     threads: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -544,6 +554,7 @@ def calibrate(
     * `profile`: Intervals from the profile of the sum of squares, which takes longer, in place of
       ±1.96 sd
     * `threads`: Threads; all cores if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "calibrate",
@@ -556,6 +567,7 @@ def calibrate(
             "--card": card,
             "--profile": profile,
             "--threads": threads,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -587,6 +599,7 @@ def plan_mean(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -622,6 +635,7 @@ def plan_mean(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan mean",
@@ -648,6 +662,7 @@ def plan_mean(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -683,6 +698,7 @@ def plan_difference(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -723,6 +739,7 @@ def plan_difference(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan difference",
@@ -753,6 +770,7 @@ def plan_difference(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -785,6 +803,7 @@ def plan_groups(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -821,6 +840,7 @@ def plan_groups(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan groups",
@@ -848,6 +868,7 @@ def plan_groups(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -883,6 +904,7 @@ def plan_slope(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -924,6 +946,7 @@ def plan_slope(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan slope",
@@ -954,6 +977,7 @@ def plan_slope(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -986,6 +1010,7 @@ def plan_model(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1022,6 +1047,7 @@ def plan_model(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan model",
@@ -1048,6 +1074,7 @@ def plan_model(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -1087,6 +1114,7 @@ def plan_surface(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1132,6 +1160,7 @@ def plan_surface(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan surface",
@@ -1165,6 +1194,7 @@ def plan_surface(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -1191,6 +1221,7 @@ def plan_population(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1219,6 +1250,7 @@ def plan_population(
     * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
       with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan population",
@@ -1239,6 +1271,7 @@ def plan_population(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -1269,6 +1302,7 @@ def plan_critical_energy(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1302,6 +1336,7 @@ def plan_critical_energy(
     * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
       with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan critical-energy",
@@ -1327,6 +1362,7 @@ def plan_critical_energy(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -1344,6 +1380,7 @@ def plan_achieved(
     confidence: float | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1363,6 +1400,7 @@ def plan_achieved(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "plan achieved",
@@ -1374,6 +1412,7 @@ def plan_achieved(
             "--confidence": confidence,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -1860,6 +1899,7 @@ def simulate_impact(
     driving_acceleration: Value | None = None,
     end: Literal["force-zero", "gap-zero"] | None = None,
     plot: Path | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1878,6 +1918,7 @@ def simulate_impact(
     * `end`: When the contact is over [default: force-zero]
     * `plot`: Write a figure of the impact, loop and force over time (SVG or PNG, by its ending),
       and its data (CSV, same name)
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "simulate impact",
@@ -1891,6 +1932,7 @@ def simulate_impact(
             "--driving-acceleration": driving_acceleration,
             "--end": end,
             "--plot": plot,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -1922,6 +1964,7 @@ def simulate_pendulum(
     range: Value | None = None,
     end: Literal["force-zero", "gap-zero"] | None = None,
     seed: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -1953,6 +1996,7 @@ def simulate_pendulum(
       [default: 10 V]
     * `end`: When the contact is over [default: force-zero]
     * `seed`: Seed of specimens and noise [default: 1]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "simulate pendulum",
@@ -1979,6 +2023,7 @@ def simulate_pendulum(
             "--range": range,
             "--end": end,
             "--seed": seed,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2003,6 +2048,7 @@ def simulate_carriage(
     spread: Value | Sequence[Value] | None = None,
     seed: int | None = None,
     end: Literal["force-zero", "gap-zero"] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2028,6 +2074,7 @@ def simulate_carriage(
     * `spread`: Standard deviation of a parameter between specimens, such as k=133165
     * `seed`: Seed of specimens and noise [default: 1]
     * `end`: When the contact is over [default: force-zero]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "simulate carriage",
@@ -2047,6 +2094,7 @@ def simulate_carriage(
             "--spread": spread,
             "--seed": seed,
             "--end": end,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2276,6 +2324,7 @@ def simulate_drop(
     range: Value | None = None,
     lowest: Value | None = None,
     seed: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2328,6 +2377,7 @@ def simulate_drop(
     * `lowest`: Its lowest voltage; minus the largest if left out. At "0 V" the downward swings of
       a ringing plate are cut off
     * `seed`: Seed of fruit, heights, trigger and noise [default: 1]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "simulate drop",
@@ -2367,6 +2417,7 @@ def simulate_drop(
             "--range": range,
             "--lowest": lowest,
             "--seed": seed,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2630,6 +2681,7 @@ def summary(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2650,6 +2702,7 @@ def summary(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "summary",
@@ -2662,6 +2715,7 @@ def summary(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2686,6 +2740,7 @@ def compare(
     measured: Value | None = None,
     predicted: Value | None = None,
     parameters: int | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2714,6 +2769,7 @@ def compare(
     * `measured`: Column of measured values, to hold predictions against
     * `predicted`: Column of predicted values
     * `parameters`: Parameters that were fitted to these values [default: 0]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "compare",
@@ -2732,6 +2788,7 @@ def compare(
             "--measured": measured,
             "--predicted": predicted,
             "--parameters": parameters,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2773,6 +2830,7 @@ def regress(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2832,6 +2890,7 @@ def regress(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "regress",
@@ -2867,6 +2926,7 @@ def regress(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2896,6 +2956,7 @@ def surface(
     theme: Literal["light", "dark"] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2933,6 +2994,7 @@ def surface(
     * `levels`: The levels of a column in their order, the reference first:
       'dose=low,medium,high'; may be repeated; a level with a comma stands in backticks; as the
       header of a design says if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "surface",
@@ -2956,6 +3018,7 @@ def surface(
             "--theme": theme,
             "--missing": missing,
             "--levels": levels,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -2970,6 +3033,7 @@ def radius(
     sagitta: Value | None = None,
     diameters: Value | None = None,
     against: Value | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -2982,6 +3046,7 @@ def radius(
     * `sagitta`: Height of the surface above the chord
     * `diameters`: Three diameters; the first along the axis that is struck or pressed
     * `against`: Radius of the other body, or "plane": gives R*
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "radius",
@@ -2991,6 +3056,7 @@ def radius(
             "--sagitta": sagitta,
             "--diameters": diameters,
             "--against": against,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -3011,6 +3077,7 @@ def bounces(
     contact: Value | None = None,
     gravity: Value | None = None,
     confidence: float | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -3034,6 +3101,7 @@ def bounces(
     * `contact`: How long a contact lasts: it is taken off every interval; nothing if left out
     * `gravity`: Acceleration of gravity, or along a track; 9.80665 m/s^2 if left out
     * `confidence`: Level of the intervals of means [default: 0.95]
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "bounces",
@@ -3048,6 +3116,7 @@ def bounces(
             "--contact": contact,
             "--gravity": gravity,
             "--confidence": confidence,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -3062,6 +3131,7 @@ def bruise(
     depth: Value | None = None,
     radius: Value | None = None,
     table: Table | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -3074,6 +3144,7 @@ def bruise(
     * `depth`: Its depth below the plane through its edge
     * `radius`: Radius of the fruit there, for the cap above that plane
     * `table`: A table of bruises (CSV)
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "bruise",
@@ -3083,6 +3154,7 @@ def bruise(
             "--depth": depth,
             "--radius": radius,
             "--table": table,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -3099,6 +3171,7 @@ def card_show(
     library: Value | bool | None = None,
     fruit: Value | None = None,
     at: Value | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -3113,6 +3186,7 @@ def card_show(
     * `library`: Published values and models, or the entry of this name, with source and cautions
     * `fruit`: Of the library, only this fruit or variety
     * `at`: Evaluate regressions of the library: NAME=VALUE with units, separated by commas
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "card show",
@@ -3124,6 +3198,7 @@ def card_show(
             "--library": library,
             "--fruit": fruit,
             "--at": at,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -3144,6 +3219,7 @@ def card_transfer(
     to_other: Value | None = None,
     to_fruit: bool = False,
     card: Path | None = None,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -3164,6 +3240,7 @@ def card_transfer(
       ratio
     * `to_fruit`: Where it is wanted, the other body is a fruit of the same modulus
     * `card`: Write the law card of the law where it is wanted
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "card transfer",
@@ -3179,6 +3256,7 @@ def card_transfer(
             "--to-other": to_other,
             "--to-fruit": to_fruit,
             "--card": card,
+            "--out": out,
         },
         json=True,
         force=force,
@@ -3190,6 +3268,7 @@ def card_transfer(
 def explain(
     codes: Value | Sequence[Value] | None = None,
     *,
+    out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
@@ -3199,11 +3278,13 @@ def explain(
     The command `windfall explain`.
 
     * `codes`: Codes of findings; all if left out
+    * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
         "explain",
         [codes],
         {
+            "--out": out,
         },
         json=True,
         force=force,

@@ -1,0 +1,125 @@
+//! A result in a file is what the command shows, and JSON says what it is.
+
+use super::options::{Kind, WRITTEN};
+use super::{laboratory, typed};
+use assert_cmd::Command;
+use std::path::Path;
+
+fn shown(line: &str, folder: &Path) -> String {
+    let mut command = Command::cargo_bin("windfall").unwrap();
+    let output = command.args(typed(line)).current_dir(folder).output();
+    let output = output.unwrap();
+    assert!(output.status.success(), "{line}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_result_in_a_file_is_what_is_shown() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    let forms = Kind::Ending(&["csv", "json", "txt"]);
+    let lines = WRITTEN.iter().filter(|own| own.2 == forms);
+    let mut count = 0;
+    for (command, _, _, line, _) in lines {
+        for (ending, format) in [("csv", "csv"), ("json", "json"), ("txt", "text")] {
+            let name = format!("{}.{ending}", command.replace(' ', "-"));
+            let line = line.replace("{}", &name);
+            let told = shown(&format!("{line} --format {format}"), folder);
+            let kept = std::fs::read_to_string(folder.join(&name)).unwrap();
+            assert_eq!(kept, told, "{line}");
+            assert!(!kept.trim().is_empty(), "{line}");
+        }
+        count += 1;
+    }
+    assert!(count >= 27, "{count} commands");
+}
+
+/// A scene that every engine can represent.
+const DROP: &str = r#"format = 1
+materials = ["apple", "steel"]
+[scene]
+time_step = "20 us"
+end = "0.1 s"
+[[contacts]]
+between = ["apple", "steel"]
+law = "kelvin-voigt(k=6000, c=25)"
+annuli = 1
+friction = 0.5
+[[contacts]]
+between = ["apple", "apple"]
+law = "kelvin-voigt(k=3000, c=12)"
+annuli = 1
+friction = 0.5
+[[fruit]]
+material = "apple"
+count = 1
+diameter = "70 mm"
+density = "840 kg/m^3"
+drop = { place = [0, 0, 0.2] }
+[[walls]]
+name = "floor"
+material = "steel"
+plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+"#;
+
+/// Commands whose files have names of their own.
+const OTHERS: &[&str] = &[
+    "new pendulum fresh --format json",
+    "add campaign --format json",
+    "fit campaign --format json",
+    "fit drops --format json",
+    "fit campaign --shard 1/2 --out part.csv --format json",
+    "report campaign --format json",
+    "inspect --presets --format json",
+    "design ccd --factor A=0..1 --factor B=0..1 --format json",
+    "simulate repeats repeats --format json",
+    "simulate pendulum --law hertz(k=9e5) --format json",
+    "simulate drop --law hertz(k=9e5) --mass 5g --height 100mm --sampling-rate 10kHz --format json",
+    "simulate drop --law hertz(k=9e5) --mass 5g --height 100mm --radius 10mm --offset 3mm --format json",
+    "scene run scene/scene.toml --restart --format json",
+    "scene study scene/study.toml --format json",
+    "scene picture scene/scene.run --format json",
+    "scene vtk scene/scene.run --format json",
+    "scene table scene/scene.run fruit --out fruit.parquet --format json",
+    "scene export scene/drop.toml --engine lammps --format json",
+    "scene export scene/scene.toml --engine yade --format json",
+    "card show --laws --format json",
+    "card show --library --format json",
+    "compare design.csv --measured y --predicted B --format json",
+    "plan achieved fruit.csv --formula k~V+(1|fruit) --format json",
+];
+
+#[test]
+fn json_says_its_version_and_its_schema_once() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    std::fs::write(folder.join("scene/drop.toml"), DROP).unwrap();
+    let forms = Kind::Ending(&["csv", "json", "txt"]);
+    let lines = WRITTEN.iter().filter(|own| own.2 == forms);
+    let lines = lines.map(|own| format!("{} --format json", own.3.replace("{}", "other.txt")));
+    for line in lines.chain(OTHERS.iter().map(|&own| own.to_owned())) {
+        let text = shown(&line, folder);
+        let parsed: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(parsed["windfall"], env!("CARGO_PKG_VERSION"), "{line}");
+        let schema = parsed["schema"].as_str().unwrap();
+        let (name, version) = schema.split_once('/').unwrap();
+        assert!(!name.is_empty() && version.parse::<u32>().is_ok(), "{line}");
+        for key in ["windfall", "schema"] {
+            let own = format!("\n  \"{key}\": ");
+            assert_eq!(text.matches(&own).count(), 1, "{line}: {key}");
+        }
+    }
+}
+
+/// The JSON of a card that is shown is a card.
+#[test]
+fn a_card_that_is_shown_as_json_is_a_card() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    let first = shown(
+        "card show --file card.toml --out card.json --format json",
+        folder,
+    );
+    let again = shown("card show --file card.json --format json", folder);
+    assert_eq!(first, again);
+}
