@@ -1,9 +1,9 @@
 //! `[bounces]` of campaign.toml.
 
 use crate::file::BouncesFile;
-use toml::Spanned;
 use windfall_campaign::settings::file::QuantityText;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, number_that, optional_quantity, positive_quantity, refused,
 };

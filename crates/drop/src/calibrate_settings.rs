@@ -1,13 +1,13 @@
 //! `[fit]` and `[calibrate]` of campaign.toml of a drop rig.
 
 use crate::file::{CalibrateFile, DropFitFile, HertzFile};
-use toml::Spanned;
 use windfall_campaign::settings::file::QuantityText;
 use windfall_campaign::settings::fit::{ENDS, LawKeys, free_names, law_expressions};
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, invalid, missing, number_that, positive_quantity, refused,
     suggestion,

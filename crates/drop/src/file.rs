@@ -1,15 +1,16 @@
 //! campaign.toml of a drop rig as it stands on disk, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
 use windfall_campaign::settings::file::{
     ChannelsFile, FilesFile, QuantityText, SummaryFile, TitleFile,
 };
 use windfall_cards::user_laws::file::LawsFile;
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DropFile {
     /// Version of the shape of this file.
@@ -42,7 +43,7 @@ pub struct DropFile {
 }
 
 /// `[rig]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DropRigFile {
     /// "drop".
@@ -76,7 +77,7 @@ pub struct DropRigFile {
 }
 
 /// `[bounces]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BouncesFile {
     /// Force above which a contact begins, or "auto".
@@ -94,7 +95,7 @@ pub struct BouncesFile {
 }
 
 /// `[fit]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DropFitFile {
     /// The law, with the parameters that are held.
@@ -106,7 +107,7 @@ pub struct DropFitFile {
 }
 
 /// `[calibrate]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrateFile {
     /// "waveform", "features", "design"; all that apply where it is left out.
@@ -130,7 +131,7 @@ pub struct CalibrateFile {
 }
 
 /// `hertz` in `[calibrate]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HertzFile {
     /// Radius of the fruit where it touches.

@@ -12,3 +12,4 @@ pub mod methods;
 pub mod plate_ringing;
 pub mod read;
 pub mod run;
+pub mod schema;

@@ -4,7 +4,6 @@ use crate::bounces::{BouncePlan, bounce_plan};
 use crate::calibrate_settings::{CalibrateSettings, Target, calibrate_settings};
 use crate::file::{DropFile, DropRigFile};
 use std::path::Path;
-use toml::Spanned;
 use windfall_campaign::settings::channels::channel_plans;
 use windfall_campaign::settings::conditioning::refuse_all_conditioning;
 use windfall_campaign::settings::file::QuantityText;
@@ -16,11 +15,15 @@ use windfall_campaign::settings::shared::read_shared;
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::{DropQuantity, Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, number_that, parse_source, positive_quantity, read_source,
     refused, suggestion, uncertainty,
 };
 use windfall_signal::uncertain::Uncertain;
+
+/// Words of `[rig] plate`.
+pub(crate) const PLATES: [(&str, PlatePlan); 1] = [("rigid", PlatePlan::Rigid)];
 
 /// A campaign of fruit that fall on a plate.
 #[derive(Clone, Debug)]
@@ -240,9 +243,8 @@ fn effective_mass_factor(source: &TomlSource, rig: &DropRigFile) -> Result<f64, 
 
 fn plate_plan(source: &TomlSource, file: &Spanned<DropRigFile>) -> Result<PlatePlan, Error> {
     let rig = file.get_ref();
-    let words = [("rigid", PlatePlan::Rigid)];
     let key = (TABLE, "plate");
-    let rigid = choice(source, rig.plate.as_ref(), key, &words)?;
+    let rigid = choice(source, rig.plate.as_ref(), key, &PLATES)?;
     let values = [
         (&rig.plate_mass, "plate_mass"),
         (&rig.plate_mass_sd, "plate_mass_sd"),

@@ -8,6 +8,7 @@ pub mod measured;
 pub mod relaxation;
 pub mod repeats;
 pub mod run;
+pub mod schema;
 pub mod taps;
 pub mod text;
 pub mod words;

@@ -7,6 +7,7 @@ pub mod frames;
 mod geometry;
 pub mod run;
 mod run_error;
+pub mod schema;
 pub mod study;
 
 pub use run_error::{SceneRunError, stopped_scene};

@@ -182,6 +182,7 @@ fn run_command(command: Command) -> anyhow::Result<()> {
         Command::Bruise(arguments) => command::bruise::run(&arguments),
         Command::Explain(arguments) => command::explain::run(&arguments),
         Command::Card(arguments) => command::card::run(&arguments),
+        Command::Schema(arguments) => command::schema::run(&arguments),
         Command::Completions { shell } => {
             let mut command = Arguments::command();
             let mut text = Vec::new();

@@ -2,8 +2,8 @@
 
 use crate::settings::file::CampaignFile;
 use crate::settings::model::{BenchPlan, ChannelPlan, MassPlan, RigPlan};
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{Needed, TomlSource, positive_quantity, refused};
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_signal::recording::Quantity;

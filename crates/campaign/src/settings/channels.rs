@@ -2,8 +2,8 @@
 
 use crate::settings::file::{CampaignFile, ChannelFile, ChannelsFile, QuantityText};
 use crate::settings::model::ChannelPlan;
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, missing, number_that, optional_quantity, place_at, positive_quantity,
     refused, uncertain_quantity,

@@ -2,8 +2,8 @@
 
 use crate::settings::channels::channels_of;
 use crate::settings::file::{ChannelFile, ChannelsFile, QuantityText};
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, number_that, positive_quantity, refused,
 };

@@ -4,8 +4,8 @@ use crate::settings::channels::encoder_plan;
 use crate::settings::conditioning::{conditioning_plan, rate_plan};
 use crate::settings::file::{CampaignFile, ContactFile, QuantityText};
 use crate::settings::model::RigPlan;
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, invalid, number_that, optional_quantity, positive_quantity, refused,
 };
@@ -14,6 +14,25 @@ use windfall_signal::encoder::edge_rate::CountTimes;
 use windfall_signal::kinematics::Encoder;
 use windfall_signal::options::RateMethod;
 use windfall_signal::trigger::{Baseline, ContactChoice, Threshold};
+
+/// Words of `[contact] baseline`.
+pub const BASELINES: [(&str, Baseline); 3] = [
+    ("remove", Baseline::Remove),
+    ("drift", Baseline::Drift),
+    ("keep", Baseline::Keep),
+];
+
+/// Words of `[contact] contact`.
+pub const CONTACTS: [(&str, ContactChoice); 2] = [
+    ("first", ContactChoice::First),
+    ("strongest", ContactChoice::Strongest),
+];
+
+/// Words of `[encoder] times`.
+pub const COUNT_TIMES: [(&str, CountTimes); 2] = [
+    ("sampled", CountTimes::Sampled),
+    ("events", CountTimes::Events),
+];
 
 const TABLE: &str = "[contact]";
 
@@ -32,20 +51,11 @@ pub fn contact_plan(
     let contact = &file.contact;
     let mut options = ExtractOptions::default();
     options.trigger.threshold = threshold(source, contact.threshold.as_ref())?;
-    let baselines = [
-        ("remove", Baseline::Remove),
-        ("drift", Baseline::Drift),
-        ("keep", Baseline::Keep),
-    ];
     let (word, key) = (contact.baseline.as_ref(), (TABLE, "baseline"));
-    let baseline = choice(source, word, key, &baselines)?;
+    let baseline = choice(source, word, key, &BASELINES)?;
     options.trigger.baseline = baseline.unwrap_or(options.trigger.baseline);
-    let contacts = [
-        ("first", ContactChoice::First),
-        ("strongest", ContactChoice::Strongest),
-    ];
     let (word, key) = (contact.contact.as_ref(), (TABLE, "contact"));
-    let chosen = choice(source, word, key, &contacts)?;
+    let chosen = choice(source, word, key, &CONTACTS)?;
     options.trigger.choice = chosen.unwrap_or(options.trigger.choice);
     let expected = "a part of the contact's duration from 0 to 100, such as 0.2";
     let margin = |value: &Option<Spanned<f64>>, key, default| {
@@ -152,15 +162,11 @@ fn edge_window(
 
 /// What the times beside counts mean.
 fn count_times(source: &TomlSource, file: &CampaignFile) -> Result<CountTimes, Error> {
-    let words = [
-        ("sampled", CountTimes::Sampled),
-        ("events", CountTimes::Events),
-    ];
     let times = file
         .encoder
         .as_ref()
         .and_then(|encoder| encoder.get_ref().times.as_ref());
-    let chosen = choice(source, times, ("[encoder]", "times"), &words)?;
+    let chosen = choice(source, times, ("[encoder]", "times"), &COUNT_TIMES)?;
     Ok(chosen.unwrap_or_default())
 }
 

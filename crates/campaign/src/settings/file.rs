@@ -3,17 +3,18 @@
 //! Every value keeps its place in the text, so that a message can name the line.
 //! `campaign` turns it into what the program works with.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
 use windfall_cards::user_laws::file::LawsFile;
 pub use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 
 /// The version that this module reads.
 pub const FORMAT: i64 = 1;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CampaignFile {
     /// Version of the shape of this file.
@@ -51,7 +52,7 @@ pub struct CampaignFile {
 }
 
 /// `[population]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PopulationFile {
     /// Columns of impacts.csv or specimens.csv, or `log(column)`.
@@ -60,7 +61,7 @@ pub struct PopulationFile {
 }
 
 /// `[campaign]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TitleFile {
     /// Title of tables and reports.
@@ -70,7 +71,7 @@ pub struct TitleFile {
 }
 
 /// `[rig]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigFile {
     /// "pendulum" or "carriage".
@@ -94,7 +95,7 @@ pub struct RigFile {
 }
 
 /// `[files]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FilesFile {
     /// Directory of the recordings, relative to the campaign.
@@ -130,7 +131,7 @@ pub struct FilesFile {
 }
 
 /// A word or number that stands for a missing sample.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(
     untagged,
     expecting = "`missing` lists words and numbers, such as [\"OVLD\", 9999]"
@@ -143,7 +144,7 @@ pub enum MissingText {
 }
 
 /// `[channels.*]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelsFile {
     /// Contact force.
@@ -165,7 +166,7 @@ pub struct ChannelsFile {
 }
 
 /// One channel.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelFile {
     /// Column in the file; `{name}` is filled from impacts.csv.
@@ -197,7 +198,7 @@ pub struct ChannelFile {
 }
 
 /// `[encoder]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EncoderFile {
     /// Counts per revolution after ×4 decoding.
@@ -211,7 +212,7 @@ pub struct EncoderFile {
 }
 
 /// `[response]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ResponseFile {
     /// Corner of a filter of first order that the force passes.
@@ -229,7 +230,7 @@ pub struct ResponseFile {
 }
 
 /// `[contact]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactFile {
     /// Force threshold, or "auto".
@@ -260,7 +261,7 @@ pub struct ContactFile {
 }
 
 /// `[fit]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FitFile {
     /// One law.
@@ -304,7 +305,7 @@ pub struct FitFile {
 }
 
 /// `[summary]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SummaryFile {
     /// Column of specimens.csv or impacts.csv.

@@ -7,9 +7,9 @@ use crate::settings::model::{ChannelPlan, FilePlan, ImpactEntry, Specimen, TimeP
 use crate::settings::open_options::{DECIMALS, ENCODINGS, SEPARATORS, THOUSANDS};
 use crate::settings::template::is_template_file;
 use std::path::{Path, PathBuf};
-use toml::Spanned;
 use windfall_files::confined::named_file;
 use windfall_files::error::{Error, Place};
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, place_at, positive_quantity, refused, suggestion,
 };

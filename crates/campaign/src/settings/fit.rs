@@ -3,11 +3,11 @@
 use crate::settings::file::{FitFile, QuantityText};
 use crate::settings::known::known_of;
 use crate::settings::model::{FitPlan, KnownKind, KnownText};
-use toml::Spanned;
 use windfall_contact::expression::{LawExpression, parse_law_among};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, invalid, missing, refused, suggestion,
 };

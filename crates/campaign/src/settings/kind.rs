@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 use std::path::Path;
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{choice, parse_source, read_source};
 
 /// Name of the campaign file.
@@ -56,7 +56,7 @@ struct RigKindFile {
 }
 
 /// Words of `[rig] kind`.
-const KINDS: [(&str, CampaignKind); 7] = [
+pub const KINDS: [(&str, CampaignKind); 7] = [
     ("pendulum", CampaignKind::Impacts),
     ("carriage", CampaignKind::Impacts),
     ("drop", CampaignKind::Drop),

@@ -1,8 +1,8 @@
 //! `[response]` of campaign.toml: what the instruments make of force and displacement.
 
 use crate::settings::file::{QuantityText, ResponseFile};
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{Needed, TomlSource, refused, uncertain_quantity};
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
 use windfall_signal::response::{Bending, Response, Swing};

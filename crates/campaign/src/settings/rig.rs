@@ -3,8 +3,8 @@
 use crate::settings::file::{QuantityText, RigFile};
 use crate::settings::model::{MassPlan, RigPlan};
 use std::ops::Range;
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, needed_quantity, quantity_from_zero, refused,
     uncertain_quantity, uncertainty,
@@ -98,11 +98,16 @@ const DRIVING_SD: Needed = Needed::of(
     "driving_acceleration_sd = \"0.02 m/s^2\"",
 );
 
+/// Rigs of single impacts.
 #[derive(Clone, Copy)]
-enum Kind {
+pub(crate) enum Kind {
     Pendulum,
     Carriage,
 }
+
+/// Words of `[rig] kind`.
+pub(crate) const KINDS: [(&str, Kind); 2] =
+    [("pendulum", Kind::Pendulum), ("carriage", Kind::Carriage)];
 
 /// The rig of a campaign, and the uncertainties that stand behind its values.
 ///
@@ -116,8 +121,7 @@ pub fn rig_plan(
         return Err(missing(source, &(0..0), &KIND, TABLE.to_owned()));
     };
     let (at, rig) = (rig.span(), rig.get_ref());
-    let kinds = [("pendulum", Kind::Pendulum), ("carriage", Kind::Carriage)];
-    match choice(source, rig.kind.as_ref(), (TABLE, "kind"), &kinds)? {
+    match choice(source, rig.kind.as_ref(), (TABLE, "kind"), &KINDS)? {
         None => Err(missing(source, &at, &KIND, TABLE.to_owned())),
         Some(Kind::Pendulum) => pendulum(source, &at, rig),
         Some(Kind::Carriage) => carriage(source, &at, rig),

@@ -1,15 +1,16 @@
 //! `[laws.NAME]`: laws of the user as they stand on disk.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 
 /// Tables of laws by name.
 pub type LawsFile = BTreeMap<String, Spanned<LawFile>>;
 
 /// A file of which only the laws are read: a file of laws, or a campaign.toml.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 pub struct OnlyLaws {
     /// The laws.
     #[serde(default)]
@@ -17,7 +18,7 @@ pub struct OnlyLaws {
 }
 
 /// `[laws.NAME]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawFile {
     /// Formula of the force in x (m), v (m/s) and the parameters; N.
@@ -43,7 +44,7 @@ pub struct LawFile {
 }
 
 /// `parameters.NAME`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawParameterFile {
     /// SI unit; "1" for a number; exponents may be named: "N/m^n".

@@ -2,7 +2,6 @@
 
 use crate::user_laws::file::{LawFile, LawParameterFile, LawsFile, OnlyLaws};
 use std::path::{Path, PathBuf};
-use toml::Spanned;
 use windfall_contact::formula::error::FormulaError;
 use windfall_contact::laws::define_law::define_law;
 use windfall_contact::laws::force_table::{COLUMNS, ForceTable};
@@ -13,6 +12,7 @@ use windfall_files::error::{Error, Place};
 use windfall_files::inputs::protect;
 use windfall_files::option_value::unusable;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_places::invalid_at;
 use windfall_files::text::toml_source::{TomlSource, invalid, parse_source, read_piped_source};
 use windfall_numerics::unit::quantity::parse_as;

@@ -1,7 +1,9 @@
 //! A physical quantity as it stands in a TOML file.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
+use std::borrow::Cow;
 
 /// A physical quantity: text with a unit, or a bare number in SI units.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,5 +34,18 @@ impl<'de> Deserialize<'de> for QuantityText {
             }
         }
         deserializer.deserialize_any(Text)
+    }
+}
+
+impl JsonSchema for QuantityText {
+    fn schema_name() -> Cow<'static, str> {
+        "Quantity".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["string", "number"],
+            "description": "A quantity with its unit in quotes, such as \"0.505 m\"; or a number in SI units."
+        })
     }
 }

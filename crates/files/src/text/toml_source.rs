@@ -3,11 +3,11 @@
 use crate::error::{Error, Place};
 use crate::inputs::{check_piped, check_regular, protect};
 use crate::text::file_quantity::QuantityText;
+use crate::text::spanned::Spanned;
 use std::fmt::Display;
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use windfall_numerics::unit::nearest_name::nearest_names;
 use windfall_numerics::unit::quantity::{LARGEST, parse_as};
@@ -140,7 +140,7 @@ pub(crate) fn check_values(source: &TomlSource) -> Result<(), Error> {
 fn check_value(
     source: &TomlSource,
     (table, key): (&str, &str),
-    value: &Spanned<DeValue>,
+    value: &toml::Spanned<DeValue>,
 ) -> Result<(), Error> {
     match value.get_ref() {
         DeValue::Float(number) => {

@@ -1,13 +1,14 @@
 //! campaign.toml of slow compressions as it stands on disk, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_campaign::settings::file::{
     ChannelsFile, FilesFile, QuantityText, SummaryFile, TitleFile,
 };
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CompressionFile {
     /// Version of the shape of this file.
@@ -34,7 +35,7 @@ pub struct CompressionFile {
 }
 
 /// `[rig]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CompressionRigFile {
     /// "compression".
@@ -50,7 +51,7 @@ pub struct CompressionRigFile {
 }
 
 /// `[compression]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct YieldFile {
     /// Force from which the fruit counts as touched.
@@ -69,7 +70,7 @@ pub struct YieldFile {
 }
 
 /// `[fit]` where only laws are fitted.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawsFile {
     /// One law.

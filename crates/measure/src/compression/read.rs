@@ -2,7 +2,6 @@
 
 use crate::compression::file::{CompressionFile, CompressionRigFile, YieldFile};
 use std::path::Path;
-use toml::Spanned;
 use windfall_campaign::settings::channels::channel_plans;
 use windfall_campaign::settings::conditioning::refuse_all_conditioning;
 use windfall_campaign::settings::files::check_format;
@@ -15,6 +14,7 @@ use windfall_contact::curvature::{radii_of_ellipsoid, radius_from_chord};
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, missing, number_that, parse_source, positive_quantity, read_source, refused,
 };

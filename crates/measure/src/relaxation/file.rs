@@ -1,13 +1,14 @@
 //! campaign.toml of stress relaxation as it stands on disk, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_campaign::settings::file::{
     ChannelsFile, FilesFile, QuantityText, SummaryFile, TitleFile,
 };
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationFile {
     /// Version of the shape of this file.
@@ -31,7 +32,7 @@ pub struct RelaxationFile {
 }
 
 /// `[rig]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationRigFile {
     /// "relaxation".
@@ -39,7 +40,7 @@ pub struct RelaxationRigFile {
 }
 
 /// `[relaxation]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HoldFile {
     /// Force from which the fruit counts as touched.

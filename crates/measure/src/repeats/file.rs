@@ -1,13 +1,14 @@
 //! campaign.toml of impacts repeated on one spot as it stands on disk, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_campaign::settings::file::{
     ChannelsFile, FilesFile, QuantityText, SummaryFile, TitleFile,
 };
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RepeatsFile {
     /// Version of the shape of this file.
@@ -31,7 +32,7 @@ pub struct RepeatsFile {
 }
 
 /// `[rig]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RepeatsRigFile {
     /// "repeats".
@@ -43,7 +44,7 @@ pub struct RepeatsRigFile {
 }
 
 /// `[repeats]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ComparisonFile {
     /// Column of specimens.csv or impacts.csv that marks the reference.

@@ -2,7 +2,6 @@
 
 use crate::repeats::file::{ComparisonFile, RepeatsFile};
 use std::path::Path;
-use toml::Spanned;
 use windfall_campaign::error::CampaignError;
 use windfall_campaign::settings::channels::channel_plans;
 use windfall_campaign::settings::conditioning::conditioning_plan;
@@ -14,6 +13,7 @@ use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_campaign::settings::shared::read_shared;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::cell_quantity::cell_quantity;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, number_that, parse_source, positive_quantity, quantity_from_zero,
     read_source, refused,
@@ -22,6 +22,16 @@ use windfall_repeat::align::{AlignOptions, Alignment};
 use windfall_repeat::permutation::SignFlipOptions;
 use windfall_repeat::threshold::Family;
 use windfall_signal::conditioning::Conditioning;
+
+/// Words of `alignment`.
+pub(crate) const ALIGNMENTS: [(&str, Alignment); 2] =
+    [("crossing", Alignment::Crossing), ("rise", Alignment::Rise)];
+
+/// Words of `distribution`.
+pub(crate) const FAMILIES: [(&str, Family); 2] = [
+    ("log-normal", Family::LogNormal),
+    ("weibull", Family::Weibull),
+];
 
 /// A campaign of impacts repeated on one spot.
 #[derive(Clone, Debug)]
@@ -138,12 +148,11 @@ fn margin(source: &TomlSource, file: &ComparisonFile) -> Result<Margin, Error> {
 
 fn align(source: &TomlSource, file: &ComparisonFile) -> Result<AlignOptions, Error> {
     let defaults = AlignOptions::default();
-    let words = [("crossing", Alignment::Crossing), ("rise", Alignment::Rise)];
     let alignment = choice(
         source,
         file.alignment.as_ref(),
         (TABLE, "alignment"),
-        &words,
+        &ALIGNMENTS,
     )?;
     let crossing = number(source, file.crossing.as_ref(), "crossing", (0.0, 0.5))?;
     Ok(AlignOptions {
@@ -171,12 +180,8 @@ fn test(source: &TomlSource, file: &ComparisonFile) -> Result<SignFlipOptions, E
 }
 
 fn family(source: &TomlSource, file: &ComparisonFile) -> Result<Family, Error> {
-    let words = [
-        ("log-normal", Family::LogNormal),
-        ("weibull", Family::Weibull),
-    ];
     let key = (TABLE, "distribution");
-    Ok(choice(source, file.distribution.as_ref(), key, &words)?.unwrap_or_default())
+    Ok(choice(source, file.distribution.as_ref(), key, &FAMILIES)?.unwrap_or_default())
 }
 
 /// Impact energy of an entry: given, or m g h; J.

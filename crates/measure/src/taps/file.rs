@@ -1,13 +1,14 @@
 //! campaign.toml of taps as it stands on disk, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_campaign::settings::file::{
     ChannelFile, FilesFile, QuantityText, SummaryFile, TitleFile,
 };
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AcousticFile {
     /// Version of the shape of this file.
@@ -31,7 +32,7 @@ pub struct AcousticFile {
 }
 
 /// `[rig]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AcousticRigFile {
     /// "acoustic".
@@ -45,7 +46,7 @@ pub struct AcousticRigFile {
 }
 
 /// `[channels]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SoundFile {
     /// Microphone, accelerometer or piezo film.
@@ -53,7 +54,7 @@ pub struct SoundFile {
 }
 
 /// `[acoustic]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ResonanceFile {
     /// "150 Hz … 2500 Hz".

@@ -2,7 +2,6 @@
 
 use crate::taps::file::{AcousticFile, ResonanceFile, SoundFile};
 use std::path::Path;
-use toml::Spanned;
 use windfall_campaign::settings::channels::{Kind, channel_plan};
 use windfall_campaign::settings::conditioning::refuse_conditioning;
 use windfall_campaign::settings::files::check_format;
@@ -10,6 +9,7 @@ use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind};
 use windfall_campaign::settings::model::Campaign;
 use windfall_campaign::settings::shared::read_shared;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, number_that, parse_source, positive_quantity, read_source,
     refused, uncertainty,
@@ -20,6 +20,9 @@ use windfall_signal::tap::find::TapOptions;
 use windfall_signal::tap::first_mode::FirstModeOptions;
 use windfall_signal::tap::resonance::ResonanceOptions;
 use windfall_signal::uncertain::Uncertain;
+
+/// Words of `[acoustic] shared`.
+pub(crate) const COMMON: [(&str, Common); 2] = [("reject", Common::Reject), ("keep", Common::Keep)];
 
 /// A campaign of taps.
 #[derive(Clone, Debug)]
@@ -94,7 +97,6 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
     let channel = channel(&source, file.channels.as_ref())?;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Acoustic;
-    let common = [("reject", Common::Reject), ("keep", Common::Keep)];
     let key = ("[acoustic]", "shared");
     Ok(AcousticCampaign {
         mass_sd: uncertainty(&source, rig.mass_sd.as_ref(), &MASS_SD)?,
@@ -113,7 +115,7 @@ pub fn read_acoustic(directory: &Path) -> Result<AcousticCampaign, Error> {
             ..ResonanceOptions::default()
         },
         first_mode: first_mode_options(&source, settings)?,
-        common: choice(&source, settings.shared.as_ref(), key, &common)?.unwrap_or_default(),
+        common: choice(&source, settings.shared.as_ref(), key, &COMMON)?.unwrap_or_default(),
         shared: read_shared(&source, directory, kind, shared, vec![channel])?,
     })
 }

@@ -3,10 +3,20 @@
 use crate::file::key::Section;
 use crate::file::regression::{RegressionPlan, read_regression};
 use crate::file::scene::{BruiseFile, FruitFile};
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{TomlSource, choice, invalid};
 use windfall_scene::bruise::damage::{BruiseModel, Predictor, SameSpot, VolumeLaw};
+
+/// Words of `same_spot`.
+pub(crate) const SAME_SPOTS: [(&str, SameSpot); 2] =
+    [("largest", SameSpot::Largest), ("sum", SameSpot::Sum)];
+
+/// Words of `predictor`.
+pub(crate) const PREDICTORS: [(&str, Predictor); 2] = [
+    ("absorbed energy", Predictor::AbsorbedEnergy),
+    ("peak force", Predictor::PeakForce),
+];
 
 /// How contacts bruise, and what counts as bruised.
 #[derive(Clone, Debug)]
@@ -43,10 +53,9 @@ pub fn bruise_of(
     let limits = limits_of(&table, file)?;
     let smallest = limits.iter().copied().fold(f64::INFINITY, f64::min);
     let mut model = threshold_of(&table, file, predictor)?;
-    let spots = [("largest", SameSpot::Largest), ("sum", SameSpot::Sum)];
     let key = (TABLE, "same_spot");
     model.same_spot =
-        choice(source, file.same_spot.as_ref(), key, &spots)?.unwrap_or(SameSpot::Largest);
+        choice(source, file.same_spot.as_ref(), key, &SAME_SPOTS)?.unwrap_or(SameSpot::Largest);
     let regression = regression_of(source, file, fruit)?;
     if let Some(own) = &regression {
         model.law = VolumeLaw::Regression(own.regression.clone());
@@ -65,12 +74,8 @@ pub fn bruise_of(
 }
 
 fn predictor_of(table: &Section, file: &BruiseFile) -> Result<Predictor, Error> {
-    let predictors = [
-        ("absorbed energy", Predictor::AbsorbedEnergy),
-        ("peak force", Predictor::PeakForce),
-    ];
     let key = (TABLE, "predictor");
-    match choice(table.source, file.predictor.as_ref(), key, &predictors)? {
+    match choice(table.source, file.predictor.as_ref(), key, &PREDICTORS)? {
         Some(predictor) => Ok(predictor),
         // A regression knows its columns; without a threshold there is nothing to predict with.
         None if file.regression.is_some() && file.threshold.is_none() => {

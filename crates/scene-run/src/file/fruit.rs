@@ -2,8 +2,8 @@
 
 use crate::file::key::Section;
 use crate::file::scene::FruitFile;
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::TomlSource;
 use windfall_scene::population::{FruitKind, Ovate, Source};
 

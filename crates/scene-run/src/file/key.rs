@@ -3,11 +3,11 @@
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::PathBuf;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use windfall_files::confined::named_beside;
 use windfall_files::error::Error;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{TomlSource, invalid, place_at, suggestion};
 use windfall_numerics::unit::quantity::parse_as;
 use windfall_scene::vector::Vector;
@@ -45,7 +45,11 @@ pub fn check_names(source: &TomlSource) -> Result<(), Error> {
     }
 }
 
-fn check_value(source: &TomlSource, key: &str, value: &Spanned<DeValue>) -> Result<(), Error> {
+fn check_value(
+    source: &TomlSource,
+    key: &str,
+    value: &toml::Spanned<DeValue>,
+) -> Result<(), Error> {
     match value.get_ref() {
         DeValue::String(text) if ONE_LINE.contains(&key) => {
             let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');

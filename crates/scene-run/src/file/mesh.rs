@@ -2,18 +2,19 @@
 
 use crate::file::key::{Section, short, short_place};
 use crate::file::stl::read_stl;
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_numerics::unit::quantity::parse_as;
 use windfall_scene::shape::mesh::{Flaws, bounds, welded};
 use windfall_scene::shape::surface::Shape;
 use windfall_scene::vector::{Vector, add, length, scaled, subtract, turn_about, turned, unit};
 
 /// `mesh`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
     /// An STL file, beside the scene.
@@ -30,7 +31,7 @@ pub struct MeshFile {
 }
 
 /// `turn`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TurnFile {
     /// Direction of the axis.

@@ -3,13 +3,14 @@
 use crate::file::columns::quantities;
 use crate::file::key::{Section, short};
 use crate::file::walls::{RotationFile, VibrationFile, axis_of, vibration_of};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::Path as FilePath;
-use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, read_data};
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{TomlSource, suggestion};
 use windfall_numerics::monotone_cubic::MonotoneCubic;
 use windfall_scene::shape::motion::{Axis, How, Move, Path, When};
@@ -17,7 +18,7 @@ use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, length, scaled, subtract, unit};
 
 /// `[[moves]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MoveFile {
     /// Name, for studies.
@@ -44,7 +45,7 @@ pub struct MoveFile {
 }
 
 /// `path`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PathFile {
     /// A table with the column time, and x, y, z or angle.

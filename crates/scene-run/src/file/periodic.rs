@@ -3,8 +3,8 @@
 use crate::file::key::{Section, short};
 use crate::file::scene::{PeriodicFile, SceneFile};
 use std::ops::Range;
-use toml::Spanned;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::place_at;
 use windfall_scene::scene::{AXES, Scene};
 use windfall_scene::shape::beyond::Unrepeatable;

@@ -1,14 +1,15 @@
 //! `[record]` of scene.toml.
 
 use crate::file::key::Section;
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::TomlSource;
 
 /// `[record]` of the file.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecordFile {
     /// Time from frame to frame.

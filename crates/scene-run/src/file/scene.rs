@@ -1,12 +1,13 @@
 //! The schema of scene.toml, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Version of the shape of this file.
@@ -46,7 +47,7 @@ pub struct SceneFile {
 }
 
 /// `[scene]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSection {
     pub title: Option<String>,
@@ -69,7 +70,7 @@ pub struct SceneSection {
 }
 
 /// `periodic`: both ends along an axis, the lower one first; m.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PeriodicFile {
     pub x: Option<Spanned<[f64; 2]>>,
@@ -78,7 +79,7 @@ pub struct PeriodicFile {
 }
 
 /// Gravity in a file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum GravityFile {
     /// Against z.
@@ -88,7 +89,7 @@ pub enum GravityFile {
 }
 
 /// `[[contacts]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactFile {
     /// The two materials.
@@ -116,7 +117,7 @@ pub struct ContactFile {
 }
 
 /// `[[fruit]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FruitFile {
     /// Name of the kind.
@@ -147,7 +148,7 @@ pub struct FruitFile {
 }
 
 /// A property of fruit: temperature, firmness.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PropertyFile {
     pub mean: f64,
@@ -157,7 +158,7 @@ pub struct PropertyFile {
 }
 
 /// `lattice`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeFile {
     /// Lowest corner of the box; m.
@@ -170,7 +171,7 @@ pub struct LatticeFile {
 }
 
 /// `pour`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PourFile {
     /// Lowest corner of the box; m.
@@ -187,7 +188,7 @@ pub struct PourFile {
 }
 
 /// `drop`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DropOneFile {
     /// From where; m.
@@ -202,7 +203,7 @@ pub struct DropOneFile {
 }
 
 /// `tree`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TreeFile {
     /// Lowest corner of the box of the crown; m.
@@ -214,7 +215,7 @@ pub struct TreeFile {
 }
 
 /// `[[sinks]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SinkFile {
     pub name: Option<String>,
@@ -225,7 +226,7 @@ pub struct SinkFile {
 }
 
 /// `[air]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AirFile {
     pub density: Option<Spanned<QuantityText>>,
@@ -234,7 +235,7 @@ pub struct AirFile {
 }
 
 /// `[events]`
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EventsFile {
     /// Contacts with a smaller peak force are counted, not written.
@@ -242,7 +243,7 @@ pub struct EventsFile {
 }
 
 /// `[bruise]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BruiseFile {
     /// "absorbed energy" or "peak force".

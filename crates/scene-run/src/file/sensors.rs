@@ -2,18 +2,19 @@
 
 use crate::file::key::{Section, short};
 use crate::file::walls::{PlaneFile, PlateFile, normal_of, plate_of};
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_files::error::{Error, Place};
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{TomlSource, place_at, suggestion};
 use windfall_scene::scene::Fruit;
 use windfall_scene::shape::surface::Plate;
 use windfall_scene::vector::Vector;
 
 /// `[[sensors]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorFile {
     /// Name.
@@ -36,7 +37,7 @@ pub struct SensorFile {
 }
 
 /// `box`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpaceFile {
     /// Lowest corner; m.

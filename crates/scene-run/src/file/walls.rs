@@ -2,11 +2,12 @@
 
 use crate::file::key::Section;
 use crate::file::mesh::{MeshFile, mesh_of};
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::file_quantity::QuantityText;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{TomlSource, suggestion};
 use windfall_scene::shape::motion::{Axis, How, Motion};
 use windfall_scene::shape::surface::{Plate, Shape};
@@ -14,7 +15,7 @@ use windfall_scene::shape::wall::Wall;
 use windfall_scene::vector::{Vector, cross, length, unit};
 
 /// `[[walls]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallFile {
     pub name: Option<Spanned<String>>,
@@ -39,7 +40,7 @@ pub struct WallFile {
 }
 
 /// `plane`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneFile {
     /// A point of it; m.
@@ -49,7 +50,7 @@ pub struct PlaneFile {
 }
 
 /// `plate`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlateFile {
     /// A corner; m.
@@ -59,7 +60,7 @@ pub struct PlateFile {
 }
 
 /// `box`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxFile {
     /// Lowest corner; m.
@@ -72,7 +73,7 @@ pub struct BoxFile {
 }
 
 /// `cylinder`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderFile {
     /// Centre of one end; m.
@@ -83,7 +84,7 @@ pub struct CylinderFile {
 }
 
 /// `vibration`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VibrationFile {
     /// Amplitude and direction; m.
@@ -92,7 +93,7 @@ pub struct VibrationFile {
 }
 
 /// `rotation`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotationFile {
     /// A point of the axis; m.

@@ -1,11 +1,12 @@
 //! The schema of a study, version 1.
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
+use windfall_files::text::spanned::Spanned;
 
 /// The whole file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
     /// Version of the shape of this file.
@@ -21,7 +22,7 @@ pub struct StudyFile {
 }
 
 /// `[[vary]]`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VaryFile {
     /// What is varied.
@@ -31,12 +32,13 @@ pub struct VaryFile {
 }
 
 /// A level.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelFile {
     pub name: String,
     /// New values, by the path of their key.
     #[serde(default)]
+    #[schemars(with = "BTreeMap<String, serde_json::Value>")]
     pub set: BTreeMap<String, Spanned<toml::Value>>,
     /// What is moved.
     #[serde(rename = "move")]
@@ -44,7 +46,7 @@ pub struct LevelFile {
 }
 
 /// `move`
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MoveFile {
     /// Names of walls, kinds of fruit and sinks.

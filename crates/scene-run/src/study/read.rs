@@ -6,11 +6,11 @@ use crate::study::change::{move_named, set_value};
 use crate::study::file::{LevelFile, StudyFile, VaryFile};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use toml::Spanned;
 use toml_edit::DocumentMut;
 use windfall_campaign::settings::files::check_format;
 use windfall_files::confined::named_beside;
 use windfall_files::error::Error;
+use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     TomlSource, invalid, parse_source, read_piped_source, read_source, refused,
 };

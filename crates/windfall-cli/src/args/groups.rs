@@ -24,7 +24,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
         "Tables and statistics",
         &["plan", "design", "regress", "surface", "compare", "summary"],
     ),
-    ("Shell", &["completions"]),
+    ("Shells and editors", &["schema", "completions"]),
     ("Help", &["help"]),
 ];
 

@@ -19,6 +19,7 @@ pub(crate) mod regress;
 pub(crate) mod report;
 pub(crate) mod scene;
 pub(crate) mod scene_view;
+pub(crate) mod schema;
 pub(crate) mod serve;
 pub(crate) mod simulate;
 pub(crate) mod simulate_drop;

@@ -580,6 +580,7 @@ pub const WRITTEN: &[Output] = &[
         "card transfer --file card.toml --from 40mm,plane --to 40mm,20mm --out {}",
         &["card.toml"],
     ),
+    ("schema", "--out", Kind::File, "schema drop --out {}", &[]),
     (
         "explain",
         "--out",

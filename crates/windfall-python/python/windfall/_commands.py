@@ -50,6 +50,7 @@ __all__ = [
     "scene_study",
     "scene_table",
     "scene_vtk",
+    "schema",
     "simulate_carriage",
     "simulate_compression",
     "simulate_drop",
@@ -3287,6 +3288,34 @@ def explain(
             "--out": out,
         },
         json=True,
+        force=force,
+        also_read=also_read,
+        progress=progress,
+    )
+
+
+def schema(
+    kind: Literal["pendulum", "carriage", "compression", "relaxation", "acoustic", "repeats", "drop", "scene", "scene-study"],
+    *,
+    out: Path | None = None,
+    force: bool = False,
+    also_read: Path | Sequence[Path] = (),
+    progress: bool = False,
+) -> Result:
+    """Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete.
+
+    The command `windfall schema`.
+
+    * `kind`: Kind of rig, a scene, or a study of scenes
+    * `out`: Write it into this file
+    """
+    return call(
+        "schema",
+        [kind],
+        {
+            "--out": out,
+        },
+        json=False,
         force=force,
         also_read=also_read,
         progress=progress,
