@@ -48,17 +48,24 @@ function regression_of_a_table(folder)
     rest = k - design * estimates;
     covariance = (rest.' * rest / 5) * inv(design.' * design);
 
-    [r, messages] = windfall('regress', file, '--formula', 'k ~ `Geschwindigkeit ü`', ...
-        '--confidence', 0.9);
+    [r, messages] = windfall('regress', file, '--formula', 'k ~ `Geschwindigkeit ü`');
     assert(numel(r.terms) == 2 && strcmp(r.terms(2).term, '`Geschwindigkeit ü`'));
     assert(max(abs([r.terms.estimate].' - estimates)) < 1e-9);
     assert(max(abs([r.terms.se].' - sqrt(diag(covariance)))) < 1e-9);
     assert(max(max(abs(r.covariance - covariance))) < 1e-9);
     assert(iscell(messages));
 
-    % Not everything is on its way: another level gives other limits.
+    % Numbers are passed with their digits.
+    level = 0.5 + 1 / 3;
+    r = windfall('summary', file, '--value', 'k', '--confidence', level);
+    assert(same(r.confidence, level));
+    assert(abs(r.values.groups.mean - mean(k)) < 1e-12);
+
+    % Another level gives other limits.
+    narrow = windfall('regress', file, '--formula', 'k ~ `Geschwindigkeit ü`', ...
+        '--confidence', 0.9);
     wider = windfall('regress', file, '--formula', 'k ~ `Geschwindigkeit ü`');
-    assert(wider.terms(2).low < r.terms(2).low);
+    assert(wider.terms(2).low < narrow.terms(2).low);
 end
 
 function fits_of_a_campaign(folder)
