@@ -17,8 +17,8 @@ def model(p, t):
     def rhs(_, y):
         return y[1], -force(*y) / MASS - SWING * y[0]
 
-    later = t >= p["onset"]
-    y = np.array([p["v"] * (t - p["onset"]), np.full(t.size, p["v"])])
+    later, angle = t >= p["onset"], SWING**0.5 * (t - p["onset"])
+    y = p["v"] * np.array([np.sin(angle) / SWING**0.5, np.cos(angle)])
     exact = {"method": "DOP853", "rtol": 1e-9, "atol": 1e-12, "first_step": 1e-6}
     y[:, later] = solve_ivp(rhs, (p["onset"], t[-1]), (0, p["v"]), t_eval=t[later], **exact).y
     return y[0] + p["offset"], np.array([force(*each) for each in y.T])
