@@ -111,7 +111,9 @@ fn rejects_commands_that_nobody_runs() {
             let place = format!("{}, line {}", page.name, block.line);
             let kind = block.kind();
             // "sh" are commands from before windfall is there: building it.
-            let kinds = ["console", "toml", "csv", "text", "sh", "python"];
+            let kinds = [
+                "console", "toml", "csv", "text", "sh", "python", "r", "octave",
+            ];
             assert!(kinds.contains(&kind), "{place}: a block of kind {kind:?}");
             if kind == "console" {
                 continue;

@@ -2,6 +2,7 @@
 
 use crate::error::CampaignError;
 use crate::settings::model::{ImpactEntry, Specimen};
+use std::collections::HashSet;
 use std::path::Path;
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::check_regular;
@@ -48,12 +49,13 @@ pub fn read_impacts(
             row_is: "impact",
         });
     }
+    let known = specimens.unwrap_or_default();
+    let ids: HashSet<&str> = known.iter().map(|own| own.id.as_str()).collect();
     table
         .rows
         .iter()
         .map(|row| {
-            let known = specimens.unwrap_or_default();
-            if specimens.is_some() && !known.iter().any(|s| s.id == row.cells[specimen]) {
+            if specimens.is_some() && !ids.contains(row.cells[specimen].as_str()) {
                 return Err(Error::from(CampaignError::SpecimenUnknown {
                     place: place(&table, row),
                     specimen: row.cells[specimen].clone(),
