@@ -395,6 +395,7 @@ pub const WRITTEN: &[Output] = &[
         "card transfer --file card.toml --from 40mm,plane --to 40mm,20mm --card {}",
         &["card.toml"],
     ),
+    ("man", "--out", Kind::Folder, "man --out {}", &[]),
 ];
 
 /// Command and option or argument of what is only read.

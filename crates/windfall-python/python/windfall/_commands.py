@@ -30,6 +30,7 @@ __all__ = [
     "fit_campaign",
     "inspect",
     "laws",
+    "licences",
     "new",
     "plan_achieved",
     "plan_critical_energy",
@@ -3204,6 +3205,32 @@ def explain(
         "explain",
         [codes],
         {
+        },
+        json=True,
+        force=force,
+        also_read=also_read,
+        progress=progress,
+    )
+
+
+def licences(
+    *,
+    texts: bool = False,
+    force: bool = False,
+    also_read: Path | Sequence[Path] = (),
+    progress: bool = False,
+) -> Result:
+    """Show what windfall is made of: crates and other parts with their licences.
+
+    The command `windfall licences`.
+
+    * `texts`: Show the texts of the licences, too
+    """
+    return call(
+        "licences",
+        [],
+        {
+            "--texts": texts,
         },
         json=True,
         force=force,
