@@ -1,16 +1,16 @@
 //! `windfall man`
 
-use crate::args::common::ManArguments;
+use crate::args::common::{Arguments, ManArguments};
 use crate::args::format::Format;
 use crate::show::{write_json, write_names, write_result};
-use clap::Command;
+use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use std::path::PathBuf;
 use windfall_files::write_file::{check_target, make_directory, write_whole};
 
 /// Writes a page for every command.
 pub fn run(arguments: &ManArguments) -> anyhow::Result<()> {
-    let mut all = crate::commands().disable_help_subcommand(true);
+    let mut all = Arguments::command().disable_help_subcommand(true);
     all.build();
     let mut pages = Vec::new();
     collect(&all, &mut pages)?;
