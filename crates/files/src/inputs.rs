@@ -248,17 +248,23 @@ pub fn check_regular(path: &Path) -> Result<(), Error> {
 /// # Errors
 /// It is a device or a socket.
 pub fn check_piped(path: &Path) -> Result<(), Error> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        let piped = |found: std::fs::Metadata| found.file_type().is_fifo();
-        let standard = [STANDARD_INPUT, "/dev/stdin", "/dev/fd", "/proc/self/fd"];
-        let standard = standard.iter().any(|own| path.starts_with(own));
-        if standard || std::fs::metadata(path).is_ok_and(piped) {
-            return Ok(());
-        }
+    let standard = [STANDARD_INPUT, "/dev/stdin", "/dev/fd", "/proc/self/fd"];
+    let standard = standard.iter().any(|own| path.starts_with(own));
+    if standard || std::fs::metadata(path).is_ok_and(|found| is_pipe(&found)) {
+        return Ok(());
     }
     check_regular(path)
+}
+
+#[cfg(unix)]
+fn is_pipe(found: &Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    found.file_type().is_fifo()
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &Metadata) -> bool {
+    false
 }
 
 #[cfg(test)]

@@ -2,12 +2,12 @@
 //! windfall is linked with neither.
 //!
 //! This is the only crate that calls foreign functions. What it hands out is safe: atoms as
-//! slices that end with a call back, messages between ranks as bytes.
+//! slices that end with a call back, messages between ranks as bytes. On systems other than Unix
+//! no library is opened, and whoever asks is told so.
 #![allow(unsafe_code)]
 
-#[cfg(unix)]
+#[cfg_attr(unix, path = "loaded.rs")]
+#[cfg_attr(not(unix), path = "loaded_nowhere.rs")]
 mod loaded;
-#[cfg(unix)]
 pub mod mpi;
-#[cfg(unix)]
 pub mod run;

@@ -121,6 +121,24 @@ fn collect_unfinished(tokens: TokenStream, found: &mut Vec<(usize, &'static str)
     }
 }
 
+/// Files that code includes from outside of its crate, whose package would lack them.
+///
+/// * `path`: of the code, in `crates/NAME/src`
+pub fn check_included(path: &Path, text: &str) -> Vec<String> {
+    let depth = path.iter().skip_while(|own| *own != "src").count() - 1;
+    let lines = text.lines().zip(1..);
+    let outside = lines.filter_map(|(line, number)| {
+        let (_, after) = line
+            .split_once("include_str!(\"")
+            .or_else(|| line.split_once("include_bytes!(\""))?;
+        let (file, _) = after.split_once('"')?;
+        let place = format!("{}:{number}", path.display());
+        (file.matches("../").count() > depth)
+            .then(|| format!("{place}: `{file}` is not in the package of the crate"))
+    });
+    outside.collect()
+}
+
 /// Whether an attribute is `ignore` or, as in `cfg_attr(…, ignore)`, sets it.
 fn names_ignore(attribute: TokenStream) -> bool {
     let tokens: Vec<TokenTree> = attribute.into_iter().collect();
@@ -208,6 +226,19 @@ mod tests {
         ] {
             assert_eq!(unfinished(text), [] as [&str; 0], "{text}");
         }
+    }
+
+    #[test]
+    fn rejects_files_of_other_crates() {
+        let found = |path: &str, file: &str| {
+            let text = format!("const A: &str = include_str!(\"{file}\");");
+            check_included(Path::new(path), &text).len()
+        };
+        assert_eq!(found("crates/a/src/lib.rs", "a.md"), 0);
+        assert_eq!(found("crates/a/src/lib.rs", "../a.md"), 0);
+        assert_eq!(found("crates/a/src/lib.rs", "../../b/a.md"), 1);
+        assert_eq!(found("crates/a/src/b/c.rs", "../../a.md"), 0);
+        assert_eq!(found("crates/a/src/b/c.rs", "../../../a.md"), 1);
     }
 
     #[test]

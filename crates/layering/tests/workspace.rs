@@ -9,9 +9,9 @@ use std::sync::LazyLock;
 use windfall_layering::arrow::{check_dependencies, is_front_end, is_inner};
 use windfall_layering::forbidden::{check_front_end, check_inner, check_writing};
 use windfall_layering::module_cycle::{check_folder_cycles, check_module_cycles};
-use windfall_layering::source::SourceFile;
+use windfall_layering::source::{Role, SourceFile};
 use windfall_layering::tidiness::{
-    check_crowding, check_functions, check_length, check_local, check_unfinished,
+    check_crowding, check_functions, check_included, check_length, check_local, check_unfinished,
 };
 use windfall_layering::workspace::{Workspace, read_workspace};
 
@@ -117,6 +117,21 @@ fn rejects_long_files_and_unfinished_code() {
         {
             violations.extend(check_unfinished(&file.path, &file.text).unwrap());
         }
+    }
+    assert_none(&violations);
+}
+
+#[test]
+fn rejects_files_that_a_package_lacks() {
+    let workspace = &*WORKSPACE;
+    let shipped = workspace.sources.iter().filter(|file| {
+        let library = file.role == Role::Shipped;
+        library && file.path.starts_with("crates") && file.package != "windfall-layering"
+    });
+    let mut violations = Vec::new();
+    for file in shipped {
+        let text = workspace.texts.iter().find(|own| own.path == file.path);
+        violations.extend(check_included(&file.path, &text.unwrap().text));
     }
     assert_none(&violations);
 }

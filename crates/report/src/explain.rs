@@ -6,8 +6,9 @@ use windfall_files::option_value::unusable;
 use windfall_files::text::table::paragraph;
 use windfall_files::text::toml_source::suggestion;
 
-/// The page of the guide.
-const PAGE: &str = include_str!("../../../docs/guide/src/findings.md");
+/// The page of the guide. It lies here a second time, so that the crate is whole without the
+/// repository.
+const PAGE: &str = include_str!("findings.md");
 
 /// A finding as the guide explains it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -92,6 +93,18 @@ pub fn text_of_explanations(explanations: &[Explanation]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn reference_the_page_is_that_of_the_guide() {
+        let guide = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../docs/guide/src/findings.md"
+        );
+        assert!(
+            std::fs::read_to_string(guide).unwrap() == PAGE,
+            "cp docs/guide/src/findings.md crates/report/src/findings.md"
+        );
+    }
 
     #[test]
     fn reference_every_row_of_the_page_is_read() {

@@ -294,12 +294,16 @@ fn bibtex() -> String {
     )
 }
 
+/// Who wrote windfall, with colons between.
+const AUTHORS: &str = env!("CARGO_PKG_AUTHORS");
+
 fn citation_file() -> String {
+    let authors = AUTHORS.split(':').map(|own| format!("  - name: {own}\n"));
+    let authors: String = authors.collect();
     format!(
         "cff-version: 1.2.0\nmessage: If you use windfall, please cite it as below.\n\
          title: windfall\nabstract: Contact-force laws of fruit from impact recordings, with \
-         calibrated uncertainty.\ntype: software\nversion: {VERSION}\nauthors:\n  - name: The \
-         windfall developers\n"
+         calibrated uncertainty.\ntype: software\nversion: {VERSION}\nauthors:\n{authors}"
     )
 }
 
@@ -310,4 +314,22 @@ fn csv_of_inputs(inputs: &[(String, String)]) -> Result<String, Error> {
 fn rows_of(inputs: &[(String, String)]) -> impl Iterator<Item = Vec<String>> {
     let inputs = inputs.iter();
     inputs.map(|(name, digest)| vec![name.clone(), digest.clone()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The file at the top of the repository says the same, and under which licence.
+    #[test]
+    fn reference_the_citation_is_that_of_the_repository() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../CITATION.cff");
+        let text = std::fs::read_to_string(path).unwrap();
+        let present: Vec<&str> = text.lines().collect();
+        for line in citation_file().lines() {
+            assert!(present.contains(&line), "CITATION.cff lacks {line:?}");
+        }
+        let authors = |text: &str| text.matches("  - name: ").count();
+        assert_eq!(authors(&text), authors(&citation_file()));
+    }
 }

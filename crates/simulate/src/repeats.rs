@@ -7,6 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::f64::consts::PI;
 use std::path::Path;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
+use windfall_campaign::settings::template::{TemplateKind, template};
 use windfall_contact::law::EndRule;
 use windfall_contact::laws::kind::{Law, LawKind};
 use windfall_contact::laws::thornton::Thornton;
@@ -307,7 +308,7 @@ fn write_tables(
         "median critical energy {} (spread of its logarithm {}), seed {}",
         request.critical_energy, request.spread, plan.seed
     );
-    let text = include_str!("../../campaign/templates/repeats.toml")
+    let text = template(TemplateKind::Repeats)
         .replace(
             "title = \"My repeated impacts\"",
             "title = \"Simulated repeated impacts\"",

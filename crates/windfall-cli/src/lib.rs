@@ -189,6 +189,8 @@ fn run_command(command: Command) -> anyhow::Result<()> {
             clap_complete::generate(shell, &mut command, "windfall", &mut text);
             show::write_result(&String::from_utf8_lossy(&text))
         }
+        Command::Man(arguments) => command::man::run(&arguments),
+        Command::Licences(arguments) => command::licences::run(&arguments),
     }
 }
 

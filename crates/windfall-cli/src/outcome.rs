@@ -63,7 +63,7 @@ pub struct WrittenRecordings {
     pub simulated: bool,
 }
 
-/// Files of a template.
+/// Files of a template, or manual pages.
 #[derive(Debug, Serialize)]
 pub struct WrittenFiles {
     /// Their paths.
@@ -98,6 +98,39 @@ pub struct Explanations {
     pub findings: Vec<Explanation>,
 }
 
+/// Parts of the program.
+#[derive(Debug, Serialize)]
+pub struct Licences {
+    /// Crates, packages of the page, fonts.
+    pub parts: Vec<Part>,
+    /// The texts of their licences, where they were asked for.
+    pub texts: Option<Vec<LicenceText>>,
+}
+
+/// A part of the program.
+#[derive(Debug, Serialize)]
+pub struct Part {
+    /// What it is called.
+    pub name: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Its licence, as an SPDX expression.
+    pub licence: &'static str,
+    /// What it is: a crate, a package of the page, a font.
+    pub kind: &'static str,
+    /// The one system whose build holds it; empty for all.
+    pub only: &'static str,
+}
+
+/// The text of a licence.
+#[derive(Debug, Serialize)]
+pub struct LicenceText {
+    /// The parts that it belongs to.
+    pub parts: &'static str,
+    /// The text.
+    pub text: &'static str,
+}
+
 /// A motion, with the samples of all its quantities.
 #[derive(Debug, Serialize)]
 #[serde(transparent)]
@@ -129,7 +162,8 @@ outcomes! {
     "inspect/1": Inspections,
     "inspect-presets/2": Presets,
     "laws/1": LawsOutcome,
-    "new/1": WrittenFiles,
+    "licences/1": Licences,
+    "written/1": WrittenFiles,
     "new-from/1": Gathered,
     "plan/1": PlanOutcome,
     "plan-achieved/1": AchievedOutcome,

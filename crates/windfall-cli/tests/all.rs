@@ -25,6 +25,8 @@ mod joint;
 mod kinds;
 mod known;
 mod library;
+mod licences;
+mod man;
 mod means;
 mod messages;
 mod on_table;

@@ -20,6 +20,7 @@ const NO_FUNCTION: &[(&str, &str)] = &[
     ("serve", "it lasts until it is interrupted"),
     ("scene rank", "LAMMPS starts it"),
     ("completions", "it is for shells"),
+    ("man", "it is for shells"),
 ];
 
 /// Functions whose name is not that of their command: `fit` takes arrays.

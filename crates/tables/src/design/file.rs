@@ -4,7 +4,7 @@
 //! its coding as a formula with all digits:
 //!
 //! ```text
-//! # windfall 0.1.0 design: central composite - rotatable
+//! # windfall 0.2.0 design: central composite - rotatable
 //! # runs 15 - blocks 1 - order of seed 1
 //! # factor A: k = 0.65 + 0.2081112450948766 A [N/mm^1.91] to 2 decimals
 //! # factor B: variety = one of Fuji | Gala

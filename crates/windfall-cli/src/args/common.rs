@@ -125,6 +125,10 @@ pub enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
+    /// Write the manual pages of all commands
+    Man(ManArguments),
+    /// Show what windfall is made of: crates and other parts with their licences
+    Licences(LicencesArguments),
 }
 
 impl Command {
@@ -230,6 +234,35 @@ pub struct SchemaArguments {
 pub struct ExplainArguments {
     /// Codes of findings; all if left out
     pub codes: Vec<String>,
+    #[command(flatten)]
+    pub shown: Shown,
+}
+
+/// `windfall man`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  windfall man --out man
+      man/windfall.1, man/windfall-fit.1 and so on; `man man/windfall-fit.1` shows one")]
+pub struct ManArguments {
+    /// Folder of the pages, one for each command
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// How the list of written files is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `windfall licences`
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  windfall licences               names, versions and licences
+  windfall licences --texts       with the texts
+
+Where a part may be taken under MIT or another licence, MIT is chosen and its text shown.")]
+pub struct LicencesArguments {
+    /// Show the texts of the licences, too
+    #[arg(long)]
+    pub texts: bool,
     #[command(flatten)]
     pub shown: Shown,
 }

@@ -24,8 +24,8 @@ const GROUPS: [(&str, &[&str]); 6] = [
         "Tables and statistics",
         &["plan", "design", "regress", "surface", "compare", "summary"],
     ),
-    ("Shells and editors", &["schema", "completions"]),
-    ("Help", &["help"]),
+    ("Shells and editors", &["schema", "completions", "man"]),
+    ("Help", &["help", "licences"]),
 ];
 
 /// The command line with its commands listed in groups.

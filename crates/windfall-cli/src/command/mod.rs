@@ -12,6 +12,8 @@ pub(crate) mod fit;
 pub(crate) mod geometry;
 pub(crate) mod inspect;
 pub(crate) mod laws;
+pub(crate) mod licences;
+pub(crate) mod man;
 pub mod new;
 pub(crate) mod plan;
 pub(crate) mod population;

@@ -580,6 +580,13 @@ pub const WRITTEN: &[Output] = &[
         "card transfer --file card.toml --from 40mm,plane --to 40mm,20mm --out {}",
         &["card.toml"],
     ),
+    (
+        "licences",
+        "--out",
+        Kind::Ending(FORMS),
+        "licences --out {}",
+        &[],
+    ),
     ("schema", "--out", Kind::File, "schema drop --out {}", &[]),
     (
         "explain",
@@ -588,6 +595,7 @@ pub const WRITTEN: &[Output] = &[
         "explain clipped --out {}",
         &[],
     ),
+    ("man", "--out", Kind::Folder, "man --out {}", &[]),
 ];
 
 /// Command and option or argument of what is only read.

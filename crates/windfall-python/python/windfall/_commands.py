@@ -30,6 +30,7 @@ __all__ = [
     "fit_campaign",
     "inspect",
     "laws",
+    "licences",
     "new",
     "plan_achieved",
     "plan_critical_energy",
@@ -3316,6 +3317,35 @@ def schema(
             "--out": out,
         },
         json=False,
+        force=force,
+        also_read=also_read,
+        progress=progress,
+    )
+
+
+def licences(
+    *,
+    texts: bool = False,
+    out: Path | None = None,
+    force: bool = False,
+    also_read: Path | Sequence[Path] = (),
+    progress: bool = False,
+) -> Result:
+    """Show what windfall is made of: crates and other parts with their licences.
+
+    The command `windfall licences`.
+
+    * `texts`: Show the texts of the licences, too
+    * `out`: Write the result into a file, too: .csv, .json or .txt
+    """
+    return call(
+        "licences",
+        [],
+        {
+            "--texts": texts,
+            "--out": out,
+        },
+        json=True,
         force=force,
         also_read=also_read,
         progress=progress,
