@@ -81,6 +81,10 @@ def test_words_are_those_that_the_command_takes(kind: str, tmp_path: Path) -> No
             lines.insert(lines.index(header) + 1, f"{key} = {value}")
         else:
             lines += [header, f"{key} = {value}"]
+            # Without these nothing else of the table is read.
+            if section == "bruise" and key != "predictor":
+                lines += ['predictor = "absorbed energy"', 'limits = ["100 mm^3"]']
+                lines += ['threshold = "0.01 J"', 'susceptibility = "2 cm^3/J"']
         path.write_text("\n".join(lines) + "\n")
         with pytest.raises(ValueError) as told:
             wf.scene_run(path) if kind == "scene" else wf.fit_campaign(path.parent)
