@@ -175,7 +175,7 @@ impl Pulse<'_> {
         let excess = self.sign * (flanks.derivatives[0] - self.limit);
         let spread = flanks.standard_deviations[0];
         let clipped = excess > EXCESS * self.height && excess > SIGNIFICANT * spread;
-        clipped.then_some((plateau, samples))
+        (clipped && excess > self.step(&plateau)).then_some((plateau, samples))
     }
 
     /// Whether a run at the limit begins and ends with a corner that no rounded top has.
@@ -188,8 +188,26 @@ impl Pulse<'_> {
             return false;
         };
         let drops = [before, after].map(|v| (v - self.limit).abs());
-        let least = || SHARP_STEPS * quantum(self.values).unwrap_or(0.0);
+        let least = || SHARP_STEPS * self.step(run);
         drops[0].max(drops[1]) > SHARP * self.height && drops[0].min(drops[1]) > least()
+    }
+
+    /// Step of a quantised signal: how far it may rise above the value on which its rounded top
+    /// stays. 0 for any other signal.
+    ///
+    /// Steps may differ, as those of a count of angles that became a position: then their median
+    /// is taken, if the signal mostly stays where it is outside of the plateau.
+    fn step(&self, plateau: &Range<usize>) -> f64 {
+        quantum(self.values).unwrap_or_else(|| {
+            let outside = self.contact.clone().skip(1);
+            let outside = outside.filter(|i| !(plateau.start..=plateau.end).contains(i));
+            let changes = outside.map(|i| (self.values[i] - self.values[i - 1]).abs());
+            let (stays, steps): (Vec<f64>, Vec<f64>) = changes.partition(|&change| change == 0.0);
+            match stays.len() > steps.len() {
+                true => median(&steps).unwrap_or(0.0),
+                false => 0.0,
+            }
+        })
     }
 
     /// Samples at the limit with others between them, where many more lie there than at the
@@ -252,7 +270,7 @@ impl Pulse<'_> {
         let unsure = SIGNIFICANT * bulge(-self.sign * inner.standard_deviations[2]);
         let slope_unsure = SIGNIFICANT * inner.standard_deviations[1];
         let steep = inner.derivatives[1].abs() > slope_unsure;
-        let clear = wanted > (BULGE * self.height)
+        let clear = wanted > (BULGE * self.height).max(self.step(&plateau))
             && wanted > SIGNIFICANT * bulge(-self.sign * flanks.standard_deviations[2]);
         let straight = found.abs() <= unsure && found.abs() + unsure <= LEVEL * wanted;
         (clear && straight && !steep).then(|| (plateau.clone(), plateau.len()))
@@ -278,6 +296,7 @@ mod tests {
     use super::*;
     use crate::noise::gaussian::{noise_source, normal};
     use crate::recording::{Channel, Times};
+    use std::f64::consts::{PI, TAU};
 
     #[test]
     fn recovers_a_position_that_stops_before_the_impactor() {
@@ -393,6 +412,24 @@ mod tests {
                     assert_eq!(found, None, "{noise} {step} {seed}");
                 }
             }
+        }
+    }
+
+    /// A coarse count of an arm's angle, as a position: its steps differ, and it stands still at
+    /// the largest displacement.
+    #[test]
+    fn rejects_no_count_that_became_a_position() {
+        let count = TAU / 20_000.0;
+        for part in 0..200 {
+            let rest = 0.0017 * f64::from(part);
+            let times: Vec<f64> = (0..700).map(|i| f64::from(i) * 1e-5).collect();
+            let values: Vec<f64> = times
+                .iter()
+                .map(|t| 1e-3 * (t / 7e-3 * PI).sin() / 0.505 + rest)
+                .map(|angle| 0.505 * ((angle / count).round() * count).sin())
+                .collect();
+            let found = clipping("x", &times, &values, (0.0, 7e-3), false);
+            assert_eq!(found, None, "{part}");
         }
     }
 
