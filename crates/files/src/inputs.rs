@@ -63,7 +63,7 @@ pub fn guard_inputs() -> Guarded {
     Guarded { number }
 }
 
-/// Files that a command used, in no order of time.
+/// Files that a command used, sorted by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UsedFiles {
     /// What it read.

@@ -142,9 +142,9 @@ fn replace(
         written(&partial)?;
         std::fs::rename(&partial, path).map_err(failed)
     });
-    match moved.is_err() {
-        true => drop(std::fs::remove_file(&partial)),
-        false => note_written(path),
+    match &moved {
+        Ok(()) => note_written(path),
+        Err(_) => drop(std::fs::remove_file(&partial)),
     }
     moved
 }

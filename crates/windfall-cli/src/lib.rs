@@ -153,9 +153,7 @@ fn tell_much(files: &UsedFiles, time: Duration) {
     for path in &files.written {
         show::message(&format!("wrote: {}", path.display()));
     }
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let seconds = time.as_secs_f64();
-    show::message(&format!("took {seconds:.3} s; {threads} processors"));
+    show::message(&format!("took {:.3} s", time.as_secs_f64()));
 }
 
 fn run_command(command: Command) -> anyhow::Result<()> {

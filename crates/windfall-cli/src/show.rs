@@ -42,9 +42,7 @@ pub fn show<T: Outcome, E: Into<anyhow::Error>>(
     text: impl Fn(&T) -> String,
     csv: impl Fn(&T) -> Result<String, Error>,
 ) -> anyhow::Result<T> {
-    let kept = shown.out.as_deref();
-    let kept = kept.map(|path| Ok::<_, Error>((path, format_of(path)?)));
-    let kept = kept.transpose()?;
+    let kept = kept_form(shown)?;
     let outcome = work().map_err(Into::into)?;
     let formed = |format| {
         Ok::<_, anyhow::Error>(match format {
@@ -59,6 +57,15 @@ pub fn show<T: Outcome, E: Into<anyhow::Error>>(
     }
     write_result(&formed(shown.format)?)?;
     Ok(outcome)
+}
+
+/// The file in which a result is kept, and its form there.
+///
+/// # Errors
+/// Its ending is not known, or it may not be written.
+pub fn kept_form(shown: &Shown) -> Result<Option<(&Path, Format)>, Error> {
+    let path = shown.out.as_deref();
+    path.map(|path| Ok((path, format_of(path)?))).transpose()
 }
 
 /// The form of a result in a file, by its ending.

@@ -47,15 +47,11 @@ fn without_null(schema: &mut Schema) {
 impl FileSchema {
     /// Says which words a key takes.
     ///
-    /// * `table`: the type of its table; empty for the file itself
+    /// * `table`: the type of its table
     /// * `choices`: what [`choice`](crate::text::toml_source::choice) chooses from
     #[must_use]
     pub fn words<T>(mut self, (table, key): (&str, &str), choices: &[(&str, T)]) -> Self {
-        let table = match table {
-            "" => String::new(),
-            name => format!("/definitions/{name}"),
-        };
-        let place = format!("{table}/properties/{key}");
+        let place = format!("/definitions/{table}/properties/{key}");
         let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
         match self.schema.pointer_mut(&place).map(with_items) {
             Some(Value::Object(value)) => drop(value.insert("enum".to_owned(), json!(words))),
@@ -64,8 +60,8 @@ impl FileSchema {
         self
     }
 
-    /// Places at which words were said that the file does not have: none, unless a program is
-    /// wrong.
+    /// Keys that [`Self::words`] was given and the file does not have; a schema without a
+    /// mistake has none.
     pub fn missing(&self) -> &[String] {
         &self.missing
     }

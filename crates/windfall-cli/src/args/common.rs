@@ -51,10 +51,10 @@ pub struct Arguments {
     /// (repeatable)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub also_read: Vec<PathBuf>,
-    /// Say nothing beside the result but what went wrong; no progress bar
+    /// Print only the result and what went wrong; no progress bar
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Say also which files were read and written, and how long it took
+    /// Also print which files were read and written, and how long it took
     #[arg(long, short, global = true, conflicts_with = "quiet")]
     pub verbose: bool,
 }

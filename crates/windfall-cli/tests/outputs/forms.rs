@@ -1,7 +1,7 @@
 //! A result in a file is what the command shows, and JSON says what it is.
 
 use super::options::{Kind, WRITTEN};
-use super::{laboratory, typed};
+use super::{laboratory, typed, windfall};
 use assert_cmd::Command;
 use std::path::Path;
 
@@ -61,6 +61,26 @@ name = "floor"
 material = "steel"
 plane = { point = [0, 0, 0], normal = [0, 0, 1] }
 "#;
+
+/// A table of bruises is always CSV.
+#[test]
+fn a_table_of_bruises_is_kept_as_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let table = "bruise_width_mm,bruise_depth_mm\n10,3\n";
+    std::fs::write(folder.join("bruises.csv"), table).unwrap();
+    let told = shown("bruise --table bruises.csv --out volumes.csv", folder);
+    let kept = std::fs::read_to_string(folder.join("volumes.csv")).unwrap();
+    assert_eq!(kept, told);
+    let (status, told) = windfall(&typed("bruise --table bruises.csv --out v.json"), folder);
+    assert_eq!(status, Some(2), "{told}");
+    assert!(told.contains(".csv"), "{told}");
+    let (status, _) = windfall(
+        &typed("bruise --table bruises.csv --out bruises.csv"),
+        folder,
+    );
+    assert_eq!(status, Some(2));
+}
 
 /// Commands whose files have names of their own.
 const OTHERS: &[&str] = &[
