@@ -4,4 +4,5 @@ mod batch;
 pub mod error;
 pub mod read;
 pub mod schema;
+pub mod stream;
 pub mod write;

@@ -24,7 +24,7 @@ use std::sync::{Mutex, PoisonError};
 const BATCH: usize = 1 << 13;
 
 /// First bytes of the files that are read.
-const MAGICS: [&[u8]; 2] = [b"PAR1", b"ARROW1"];
+pub(crate) const MAGICS: [&[u8]; 2] = [b"PAR1", b"ARROW1"];
 
 /// Whether a file that begins like this is read here.
 pub fn is_columnar(start: &[u8]) -> bool {

@@ -221,6 +221,11 @@ pub fn run_on_engine(
     if own.engine == Engine::Windfall {
         return run_scene(path, request, progress);
     }
+    if !request.set.is_empty() {
+        let problem =
+            "an engine is given the file as it is; change it there, or use --engine windfall";
+        return Err(unusable_option("--set", problem));
+    }
     let mut ready = ready(path, own.engine, &own.deck)?;
     let out = directory_of(path, request);
     let outside = own.frames.is_some() || own.pulses.is_some() || own.engine_frames;

@@ -57,6 +57,7 @@ impl Lab {
         let request = SceneRequest {
             out: Some(self.out()),
             threads: Some(1),
+            set: Vec::new(),
             start,
         };
         let progress = |done: usize, _: usize| match done as u64 >= until {

@@ -3,6 +3,7 @@
 //! Everything goes in as words of a command line, text or bytes, and comes out as JSON or
 //! bytes; `python/windfall` makes objects of it. Nothing is calculated here or there.
 
+mod columns;
 mod command;
 mod fit;
 mod recording;
@@ -12,6 +13,8 @@ mod work;
 /// The extension module.
 #[pyo3::pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::columns::arrow_stream;
     #[pymodule_export]
     use crate::command::{call, main};
     #[pymodule_export]

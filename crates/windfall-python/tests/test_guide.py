@@ -24,7 +24,7 @@ def test_the_page_prints_what_it_shows(
     monkeypatch.chdir(tmp_path)
     blocks = BLOCK.findall(PAGE.read_text())
     names: dict[str, Any] = {}
-    assert [kind for kind, _ in blocks] == ["python", "text"] * 7
+    assert [kind for kind, _ in blocks] == ["python", "text"] * 8
     for (_, code), (_, text) in zip(blocks[::2], blocks[1::2]):
         exec(compile(code, str(PAGE), "exec"), names)
         printed = capsys.readouterr().out

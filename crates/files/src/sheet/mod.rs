@@ -7,6 +7,7 @@ pub mod write;
 
 use crate::text::column_title::column_title;
 pub use windfall_columnar::schema::{Cell, Column, Kind, Schema};
+pub use windfall_columnar::stream::arrow_stream_of;
 
 /// A column whose unit stands in its name: `peak_force_N`.
 pub fn titled(name: &str, kind: Kind, meaning: &str) -> Column {

@@ -3,6 +3,7 @@
 pub(crate) mod bruise;
 pub(crate) mod bruise_expression;
 pub(crate) mod card;
+pub(crate) mod change;
 pub(crate) mod columns;
 mod contacts;
 pub mod engine_kind;

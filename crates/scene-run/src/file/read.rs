@@ -1,6 +1,7 @@
 //! scene.toml → a scene.
 
 use crate::file::bruise::{BruisePlan, bruise_of};
+use crate::file::change::set_value;
 use crate::file::contacts::contacts_of;
 use crate::file::fruit::fruit_of;
 use crate::file::key::{Section, check_names};
@@ -14,12 +15,14 @@ use crate::file::sensors::{Kinds, SensorsPlan, sensors_of};
 use crate::file::walls::wall_of;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use toml_edit::{DocumentMut, TomlError};
 use windfall_campaign::settings::files::check_format;
 use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_cards::law_card::LawCard;
 use windfall_files::confined::named_beside;
 use windfall_files::error::{Error, Place};
 use windfall_files::found::FindingOutcome;
+use windfall_files::option_value::unusable;
 use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{TomlSource, parse_source, place_at, read_piped_source};
 use windfall_scene::scene::{Air, Scene, Sink};
@@ -94,6 +97,50 @@ pub fn read_scene(path: &Path) -> Result<ScenePlan, Error> {
         path,
         "`windfall new scene DIR` writes a template",
     )?)
+}
+
+/// [`read_scene`] with other values than the file has; what was changed is a finding.
+///
+/// * `set`: each as KEY=VALUE, such as "walls.edge.material=foam"; a value that is no TOML is a text
+///
+/// # Errors
+/// Those of [`read_scene`]; a change has no such key, or leads to a scene that cannot be.
+pub fn read_changed_scene(path: &Path, set: &[String]) -> Result<ScenePlan, Error> {
+    let mut source = read_piped_source(path, "`windfall new scene DIR` writes a template")?;
+    if set.is_empty() {
+        return scene_of(&source);
+    }
+    // What is no scene at all is told with its line, before anything is changed.
+    let _: SceneFile = parse_source(&source)?;
+    let refused = |change: &str, problem: String| unusable(format!("--set {change}"), problem);
+    let mut document: DocumentMut = source
+        .text
+        .parse()
+        .map_err(|error: TomlError| refused(&set.join(" "), error.to_string()))?;
+    for change in set {
+        let Some((key, text)) = change.split_once('=') else {
+            let problem = "expected KEY=VALUE, such as scene.seed=7 or walls.floor.material=foam";
+            return Err(refused(change, problem.to_owned()));
+        };
+        set_value(&mut document, key.trim(), &value_of(text.trim()))
+            .map_err(|problem| refused(change, problem))?;
+    }
+    source.text = document.to_string();
+    let mut plan =
+        scene_of(&source).map_err(|error| refused(&set.join(" --set "), error.to_string()))?;
+    let changes = set.join(", ");
+    let message = format!("the scene is not as its file says: {changes} (--set)");
+    plan.findings
+        .push(FindingOutcome::new("changed-scene", message));
+    Ok(plan)
+}
+
+/// A value of TOML; any other text is one.
+fn value_of(text: &str) -> toml::Value {
+    let table = toml::from_str::<toml::Table>(&format!("value = {text}"));
+    let table = table.ok().filter(|own| own.len() == 1);
+    let value = table.and_then(|mut own| own.remove("value"));
+    value.unwrap_or_else(|| toml::Value::String(text.to_owned()))
 }
 
 /// [`read_scene`] of a text; files that it names lie beside its path.

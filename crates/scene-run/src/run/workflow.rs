@@ -2,7 +2,7 @@
 
 use crate::bruise::scene::{Blows, finding_of_blows};
 use crate::file::engine_kind::Engine;
-use crate::file::read::{ScenePlan, read_scene};
+use crate::file::read::{ScenePlan, read_changed_scene};
 use crate::file::step::checked_step;
 use crate::file_error::{make_directory, write_json};
 use crate::run::advance::{Mover, Own, SceneRun};
@@ -43,6 +43,9 @@ pub struct SceneRequest {
     /// Number of threads; all cores if left out. It never changes a result
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub threads: Option<usize>,
+    /// Another value than the file has, such as walls.edge.material=foam (repeatable)
+    #[cfg_attr(feature = "clap", arg(long, value_name = "KEY=VALUE"))]
+    pub set: Vec<String>,
     /// What to do with a run that was stopped
     #[cfg_attr(feature = "clap", arg(skip))]
     pub start: SceneStart,
@@ -74,7 +77,7 @@ pub fn run_scene(
     request: &SceneRequest,
     progress: Progress,
 ) -> Result<SceneOutcome, Error> {
-    let plan = read_scene(path)?;
+    let plan = read_changed_scene(path, &request.set)?;
     let out = directory_of(path, request);
     on_threads(request.threads, || {
         Ok(run_plan(plan, &out, request.start, progress)?.outcome)

@@ -1,6 +1,5 @@
 //! `windfall scene study`: variants of a scene side by side.
 
-pub(crate) mod change;
 pub(crate) mod figure;
 pub(crate) mod file;
 pub(crate) mod interval;

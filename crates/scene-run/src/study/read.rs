@@ -1,8 +1,8 @@
 //! A study's file → the scenes of its variants.
 
+use crate::file::change::{move_named, set_value};
 use crate::file::key::Section;
 use crate::file::scene::SceneFile;
-use crate::study::change::{move_named, set_value};
 use crate::study::file::{LevelFile, StudyFile, VaryFile};
 use serde::Serialize;
 use std::path::{Path, PathBuf};

@@ -99,6 +99,7 @@ Examples:
   windfall new scene my-scene
   windfall scene run my-scene/scene.toml
   windfall scene run my-scene/scene.toml --out first-try --threads 2 --format json
+  windfall scene run my-scene/scene.toml --set fruit.apples.count=20 --set scene.seed=7 --out second-try
   windfall scene run my-scene/scene.toml --resume
   windfall scene run my-scene/scene.toml --engine lammps --ranks 4"
 )]

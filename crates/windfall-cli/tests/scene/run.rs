@@ -1,6 +1,6 @@
 //! `windfall scene` as a user meets it.
 
-use super::{scene, windfall};
+use super::{change, scene, windfall};
 use std::path::Path;
 
 /// What the program says of a scene that it refuses.
@@ -12,6 +12,55 @@ fn refused(changes: &[(&str, &str)]) -> String {
     let left = folder.path().join("s/scene.run/events.csv");
     assert!(!left.exists(), "{changes:?} left a table");
     problem
+}
+
+/// Other values than the file has: the result is that of a file with them, and says so.
+#[test]
+fn a_value_that_is_set_is_as_if_the_file_had_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let short = [("end = \"4 s\"", "end = \"0.5 s\"")];
+    scene(folder, &short);
+    let file = std::fs::read_to_string(folder.join("s/scene.toml")).unwrap();
+    let run = |more: &[&str]| windfall(&[&["scene", "run", "s/scene.toml"], more].concat(), folder);
+    let set = [
+        "--set",
+        "fruit.apples.count=7",
+        "--set",
+        "fruit.apples.diameter=60 mm",
+    ];
+    let (done, text, problem) = run(&[&set[..], &["--out", "set"]].concat());
+    assert!(done, "{problem}");
+    assert!(text.contains("changed-scene"), "{text}");
+    let unchanged = std::fs::read_to_string(folder.join("s/scene.toml")).unwrap();
+    assert_eq!(unchanged, file);
+    let written = [
+        ("count = 100", "count = 7"),
+        ("diameter = \"75 mm\"", "diameter = \"60 mm\""),
+    ];
+    change(&folder.join("s/scene.toml"), &written);
+    let (done, text, problem) = run(&["--out", "written"]);
+    assert!(done && !text.contains("changed-scene"), "{text} {problem}");
+    for name in ["events.csv", "fruit.csv"] {
+        let [set, written] =
+            ["set", "written"].map(|own| std::fs::read(folder.join(own).join(name)).unwrap());
+        assert_eq!(set, written, "{name}");
+    }
+    for (wrong, told) in [
+        ("scene.seed", "KEY=VALUE"),
+        ("seed=2", "no path of a key"),
+        ("fruit.aples.count=2", "apples"),
+        ("fruit.apples.count=few", "count"),
+        ("walls.floor.material=glass", "glass"),
+        ("scene.seed=2\nend = 1", "seed"),
+    ] {
+        let (done, _, problem) = run(&["--set", wrong, "--out", "none"]);
+        assert!(!done && problem.contains(told), "{wrong}: {problem}");
+        assert!(problem.contains("--set"), "{wrong}: {problem}");
+        assert!(!folder.join("none").exists(), "{wrong}");
+    }
+    let (done, _, problem) = run(&["--engine", "lammps", "--set", "scene.seed=2"]);
+    assert!(!done && problem.contains("--set"), "{problem}");
 }
 
 #[test]

@@ -8,13 +8,14 @@ commands work on. Numbers are SI; texts carry their unit.
 A wrong request is a `ValueError`; work that failed is a `WindfallError`.
 """
 
-from windfall import _commands
-from windfall._campaign import Campaign, Card, Population, Scene
+from windfall import _commands, design, plan
+from windfall._campaign import Campaign, Card, Population, Run, Scene
 from windfall._commands import *  # noqa: F403
 from windfall._errors import WindfallError
 from windfall._fit import Carriage, Fit, Fits, Pendulum, fit, fit_many
 from windfall._recording import Channel, Recording, read
 from windfall._result import Result
+from windfall._table import Table
 
 __all__ = [
     "Campaign",
@@ -27,10 +28,14 @@ __all__ = [
     "Population",
     "Recording",
     "Result",
+    "Run",
     "Scene",
+    "Table",
     "WindfallError",
+    "design",
     "fit",
     "fit_many",
+    "plan",
     "read",
     *_commands.__all__,
 ]

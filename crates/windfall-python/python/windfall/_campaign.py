@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from windfall import _commands
 from windfall._call import Path, Value
 from windfall._result import Result
+from windfall._table import Table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from tempfile import TemporaryDirectory
+
 
 
 class Campaign:
@@ -26,6 +29,12 @@ class Campaign:
     def fit(self, law: Value | list[Value] | None = None, **options: Any) -> Result:
         """Fits force laws to its impacts: `fit_campaign`."""
         return _commands.fit_campaign(self.directory, law=law, **options)
+
+    def table(self, law: Value | list[Value] | None = None, **options: Any) -> Table:
+        """The table of its fits, a row for each impact and law: `fit_campaign` with `out`."""
+        return _table(
+            lambda out: _commands.fit_campaign(self.directory, law=law, out=out, **options)
+        )
 
     def laws(self, law: list[Value] | None = None, **options: Any) -> Result:
         """Compares force laws: `laws`."""
@@ -94,15 +103,64 @@ class Card:
         return f"Card({self.path!r})"
 
 
+class Run(Result):
+    """A scene that has run."""
+
+    __slots__ = ()
+
+    def __init__(self, found: Result) -> None:
+        super().__init__(found.to_dict(), found.messages)
+
+    def __reduce__(self) -> Any:
+        return Run, (Result(self.to_dict(), self.messages),)
+
+    @property
+    def directory(self) -> str:
+        """Where its files lie."""
+        return os.path.dirname(str(self["files"][0]))
+
+    @property
+    def events(self) -> Table:
+        """All contacts: `table("events")`."""
+        return self.table("events")
+
+    def table(self, table: Literal["events", "fruit", "frames"]) -> Table:
+        """Its contacts, its fruit, or where they are in recorded frames: `scene_table`."""
+        return _table(lambda out: _commands.scene_table(self.directory, table, out=out))
+
+    @property
+    def bruised(self) -> Any:
+        """Shares of bruised fruit, if the scene says what bruises."""
+        return self["bruise"]
+
+
+def _table(write: Callable[[str], object]) -> Table:
+    """A table in a file that lasts as long as it."""
+    from tempfile import TemporaryDirectory
+
+    folder = TemporaryDirectory(prefix="windfall-")
+    path = os.path.join(folder.name, "table.arrow")
+    write(path)
+    return Table(folder, path)
+
+
 class Scene:
     """A scene file: many fruit in a machine."""
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, set: Sequence[str] = ()) -> None:
         self.file = os.fsdecode(file)
+        self._set = tuple(set)
 
-    def run(self, **options: Any) -> Result:
+    def set(self, key: str, value: Any) -> Scene:
+        """The scene with another value: `set("walls.edge.material", "foam")`. Its file stays."""
+        import json
+
+        # Texts, numbers and lists are written alike in TOML.
+        return Scene(self.file, [*self._set, f"{key}={json.dumps(value, ensure_ascii=False)}"])
+
+    def run(self, **options: Any) -> Run:
         """Runs it: `scene_run`."""
-        return _commands.scene_run(self.file, **options)
+        return Run(_commands.scene_run(self.file, set=self._set, **options))
 
     def export(self, engine: Any, **options: Any) -> Result:
         """Writes it for another engine: `scene_export`."""

@@ -2433,6 +2433,7 @@ def scene_run(
     *,
     out: Path | None = None,
     threads: int | None = None,
+    set: Value | Sequence[Value] | None = None,
     resume: bool = False,
     restart: bool = False,
     engine: Literal["windfall", "lammps", "liggghts"] | None = None,
@@ -2455,6 +2456,7 @@ def scene_run(
     * `file`: The scene
     * `out`: Directory to write into
     * `threads`: Number of threads; all cores if left out. It never changes a result
+    * `set`: Another value than the file has, such as walls.edge.material=foam (repeatable)
     * `resume`: Go on with a run that was stopped, from its last checkpoint
     * `restart`: Begin anew where a run was stopped
     * `engine`: The engine that moves the fruit [default: windfall]
@@ -2480,6 +2482,7 @@ def scene_run(
         {
             "--out": out,
             "--threads": threads,
+            "--set": set,
             "--resume": resume,
             "--restart": restart,
             "--engine": engine,

@@ -204,6 +204,16 @@ class Fits(Sequence[Fit]):
             for name in fit.params.keys()
         ]
 
+    def to_pandas(self) -> Any:
+        """`rows` as a data frame of pandas."""
+        pandas: Any = import_module("pandas")
+        return pandas.DataFrame(self.rows())
+
+    def to_polars(self) -> Any:
+        """`rows` as a data frame of polars."""
+        polars: Any = import_module("polars")
+        return polars.DataFrame(self.rows(), infer_schema_length=None)
+
     def _repr_html_(self) -> str:
         return table_html(self.rows())
 
