@@ -1,23 +1,21 @@
 //! A result in a file is what the command shows, and JSON says what it is.
 
-use super::options::{Kind, WRITTEN};
-use super::{laboratory, typed, windfall};
-use assert_cmd::Command;
+use super::laboratory;
+use super::options::{FORMS, Kind, WRITTEN};
+use crate::counted::windfall;
 use std::path::Path;
 
 fn shown(line: &str, folder: &Path) -> String {
-    let mut command = Command::cargo_bin("windfall").unwrap();
-    let output = command.args(typed(line)).current_dir(folder).output();
-    let output = output.unwrap();
-    assert!(output.status.success(), "{line}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
+    let (status, shown, told) = windfall(line, folder);
+    assert_eq!(status, Some(0), "{line}: {told}");
+    shown
 }
 
 #[test]
 fn a_result_in_a_file_is_what_is_shown() {
     let laboratory = laboratory();
     let folder = laboratory.path();
-    let forms = Kind::Ending(&["csv", "json", "txt"]);
+    let forms = Kind::Ending(FORMS);
     let lines = WRITTEN.iter().filter(|own| own.2 == forms);
     let mut count = 0;
     for (command, _, _, line, _) in lines {
@@ -72,13 +70,10 @@ fn a_table_of_bruises_is_kept_as_csv() {
     let told = shown("bruise --table bruises.csv --out volumes.csv", folder);
     let kept = std::fs::read_to_string(folder.join("volumes.csv")).unwrap();
     assert_eq!(kept, told);
-    let (status, told) = windfall(&typed("bruise --table bruises.csv --out v.json"), folder);
+    let (status, _, told) = windfall("bruise --table bruises.csv --out v.json", folder);
     assert_eq!(status, Some(2), "{told}");
     assert!(told.contains(".csv"), "{told}");
-    let (status, _) = windfall(
-        &typed("bruise --table bruises.csv --out bruises.csv"),
-        folder,
-    );
+    let (status, ..) = windfall("bruise --table bruises.csv --out bruises.csv", folder);
     assert_eq!(status, Some(2));
 }
 
@@ -114,7 +109,7 @@ fn json_says_its_version_and_its_schema_once() {
     let laboratory = laboratory();
     let folder = laboratory.path();
     std::fs::write(folder.join("scene/drop.toml"), DROP).unwrap();
-    let forms = Kind::Ending(&["csv", "json", "txt"]);
+    let forms = Kind::Ending(FORMS);
     let lines = WRITTEN.iter().filter(|own| own.2 == forms);
     let lines = lines.map(|own| format!("{} --format json", own.3.replace("{}", "other.txt")));
     for line in lines.chain(OTHERS.iter().map(|&own| own.to_owned())) {
@@ -129,6 +124,38 @@ fn json_says_its_version_and_its_schema_once() {
             assert_eq!(text.matches(&own).count(), 1, "{line}: {key}");
         }
     }
+}
+
+#[test]
+fn quiet_says_nothing_and_verbose_says_which_files() {
+    let laboratory = laboratory();
+    let folder = laboratory.path();
+    let line = "fit campaign --refit --out fits.csv";
+    let (status, usual, told) = windfall(line, folder);
+    assert_eq!(status, Some(0));
+    assert!(
+        told.contains("2 fitted") && !told.contains("read:"),
+        "{told}"
+    );
+    let (status, quiet, told) = windfall(&format!("{line} -q"), folder);
+    assert_eq!((status, told.as_str()), (Some(0), ""));
+    assert_eq!(quiet, usual);
+    let (status, _, told) = windfall(&format!("{line} -v"), folder);
+    assert_eq!(status, Some(0));
+    for said in [
+        "read: campaign/campaign.toml",
+        "read: campaign/raw/specimen-01.csv",
+        "wrote: campaign/results.sqlite",
+        "wrote: fits.csv",
+        "took ",
+    ] {
+        assert!(told.contains(said), "{said}: {told}");
+    }
+    // What went wrong is said even so.
+    let (status, _, told) = windfall("fit nowhere -q", folder);
+    assert_eq!(status, Some(2));
+    assert!(told.starts_with("error: "), "{told}");
+    assert_eq!(windfall("fit campaign -q -v", folder).0, Some(2));
 }
 
 /// The JSON of a card that is shown is a card.

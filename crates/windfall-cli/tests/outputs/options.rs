@@ -50,7 +50,7 @@ const SCENE: &[&str] = &["scene/scene.toml"];
 const RUN: &[&str] = &["scene/scene.run/frames.bin"];
 
 /// Endings of a result that is written into a file, too.
-const FORMS: &[&str] = &["csv", "json", "txt"];
+pub const FORMS: &[&str] = &["csv", "json", "txt"];
 
 /// Of options that several commands share the line is that of one of them.
 pub const WRITTEN: &[Output] = &[
