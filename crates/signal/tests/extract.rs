@@ -489,9 +489,10 @@ fn recovers_a_fixed_threshold_of_one_newton() {
 }
 
 /// Half a sine of force, 6 ms long from 10 ms on, in 30 ms at 200 kHz, with
-/// white noise of 1 N.
-fn noisy_pulse(peak: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
+/// noise of 1 N: of each sample `persistence` times that of the one before, and a new part.
+fn noisy_pulse(peak: f64, persistence: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
     let mut source = noise_source(seed, 0);
+    let mut noise = normal(&mut source);
     let times: Vec<f64> = (0..6000).map(|i| f64::from(i) * 5e-6).collect();
     let force = times.iter().map(|t| {
         let phase = (t - 0.010) / 0.006;
@@ -500,15 +501,16 @@ fn noisy_pulse(peak: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
         } else {
             0.0
         };
+        noise = persistence * noise + (1.0 - persistence.powi(2)).sqrt() * normal(&mut source);
         // Compression negative, with an offset: neither must matter.
-        0.4 - pulse + normal(&mut source)
+        0.4 - pulse + noise
     });
     let force = force.collect();
     (times, force)
 }
 
-fn contacts_of(peak: f64, seed: u64) -> Result<Contacts, Error> {
-    let (times, values) = noisy_pulse(peak, seed);
+fn contacts_of(peak: f64, persistence: f64, seed: u64) -> Result<Contacts, Error> {
+    let (times, values) = noisy_pulse(peak, persistence, seed);
     let signal = Signal {
         name: "force",
         unit: "N",
@@ -530,13 +532,13 @@ fn recovers_weak_contacts_in_white_noise() {
         (20.0, 0.05),
     ] {
         for seed in 0..100 {
-            let contacts = contacts_of(ratio, seed).unwrap();
+            let contacts = contacts_of(ratio, 0.0, seed).unwrap();
             assert_eq!(contacts.windows.len(), 1, "{ratio} {seed} {contacts:?}");
             assert!(contacts.reversed, "{ratio} {seed}");
             let window = contacts.windows[0];
             let onset = (window.onset - 0.010) / 0.006;
             let end = (0.016 - window.end) / 0.006;
-            assert!(onset > -0.02 && onset < late, "{ratio} {seed} {onset}");
+            assert!(onset > -0.03 && onset < late, "{ratio} {seed} {onset}");
             assert!(end > -0.04 && end < late, "{ratio} {seed} {end}");
             let (zero, noise) = (contacts.offset - 0.4, contacts.deviation - 1.0);
             assert!(zero.abs() < 0.15 && noise.abs() < 0.1, "{zero} {noise}");
@@ -545,10 +547,27 @@ fn recovers_weak_contacts_in_white_noise() {
 }
 
 #[test]
+fn recovers_whole_contacts_in_noise_that_persists() {
+    // From sample to sample by 0.8: a mean over many samples has three times the noise that it
+    // has of white noise, and differences of samples show 0.4 of it.
+    for (ratio, late) in [(6.0, 0.2), (10.0, 0.08), (20.0, 0.08)] {
+        for seed in 0..100 {
+            let contacts = contacts_of(ratio, 0.8, seed).unwrap();
+            assert_eq!(contacts.windows.len(), 1, "{ratio} {seed} {contacts:?}");
+            let window = contacts.windows[0];
+            let onset = (window.onset - 0.010) / 0.006;
+            let end = (0.016 - window.end) / 0.006;
+            assert!(onset > -0.05 && onset < late, "{ratio} {seed} {onset}");
+            assert!(end > -0.05 && end < late, "{ratio} {seed} {end}");
+        }
+    }
+}
+
+#[test]
 fn rejects_noise_as_a_contact() {
     // 100 recordings of 6000 samples: five standard deviations are not reached.
     for seed in 0..100 {
-        let contacts = contacts_of(0.0, seed);
+        let contacts = contacts_of(0.0, 0.0, seed);
         assert!(
             matches!(contacts, Err(Error::NoContact { .. })),
             "{seed} {contacts:?}"

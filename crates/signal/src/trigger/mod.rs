@@ -8,7 +8,7 @@ use crate::error::{Error, Times};
 use crate::noise::estimate::{baseline, median};
 use crate::trigger::quiet_stretch::{LEVEL, quiet_stretch, usual_deviation, wander};
 use crate::trigger::scale::{
-    Level, PulseScale, RunningSums, largest, pulse_scale, quieter, white_noise,
+    Level, PulseScale, RunningSums, THRESHOLD_AIM, largest, pulse_scale, quieter, white_noise,
 };
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -36,8 +36,7 @@ const WANDERING_SHARE: f64 = 0.5;
 /// pieces; 1.
 const FIXED_CLEAR: f64 = 3.0;
 
-/// The noise of the averaged signal is measured where this many independent
-/// averages lie before contact.
+/// The noise of an averaged signal is measured in this many independent averages, at least.
 const LEAST_AVERAGES: usize = 40;
 
 /// Above what a force counts as contact.
@@ -241,9 +240,9 @@ pub struct Signal<'a> {
 ///
 /// The sign is that of the largest departure from the first samples (from the
 /// last, if the first are in contact). Offset and noise come from the samples
-/// before the first contact, from the last of them where the zero drifts. The signal is averaged over 1/50 of the contact
-/// (not at all where that is less than a sample), over up to 1/5 of it where the
-/// noise asks for that, and compared with the threshold: a contact begins above
+/// before the first contact, from the last of them where the zero drifts. The signal is averaged
+/// over 1/50 of the contact (not at all where that is less than a sample), over up to 1/5 of it
+/// where the noise, white or not, asks for that, and compared with the threshold: a contact begins above
 /// it and is over below `release` of it. Excursions that are small or short
 /// against the largest are ringing and left out; contacts with a shorter gap
 /// than the minimum are one.
@@ -309,15 +308,13 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         contacts.quiet = quiet.clone();
         contacts.offset = if keeps { 0.0 } else { mean };
         let raised = raised(signal.values, contacts.offset, sign);
-        let noise = |length: usize| {
-            let averaged = sums.means_in(quiet.clone(), length);
-            smoothed_noise(&averaged, usual.max(sample_noise), length)
-        };
+        let noise = |length: usize| averaged_noise(&sums, &quiet, usual.max(sample_noise), length);
         let raised_sums = RunningSums::of(&raised);
-        contacts.smoothing = match options.threshold {
-            Threshold::Fixed(force) => quieter(&raised_sums, smoothing, force / FIXED_CLEAR, noise),
-            Threshold::Automatic { .. } => smoothing,
+        let wanted = match options.threshold {
+            Threshold::Fixed(force) => force / FIXED_CLEAR,
+            Threshold::Automatic { deviations, .. } => THRESHOLD_AIM * height.abs() / deviations,
         };
+        contacts.smoothing = quieter(&raised_sums, smoothing, wanted, noise);
         let smoothing = contacts.smoothing;
         let smooth = raised_sums.means(smoothing);
         let largest = largest(&smooth, |v| v);
@@ -422,18 +419,19 @@ fn check(signal: &Signal, options: &TriggerOptions) -> Result<(), Error> {
     Ok(())
 }
 
-/// Noise of the averaged signal: that of white noise, or what is seen before
-/// contact if that is more (noise that is correlated averages out less) and if
-/// there is enough to see it in.
+/// Noise of a mean over `length` samples: that of white noise, or what is seen before contact
+/// if that is more (noise that persists averages out less).
 ///
-/// * `averaged`: averaged signal before contact
+/// It is seen in means over `length`, or over as many samples as leave [`LEAST_AVERAGES`]
+/// independent ones; longer means are quieter by the root of their length.
+///
 /// * `noise`: standard deviation of a sample
-fn smoothed_noise(averaged: &[f64], noise: f64, smoothing: usize) -> f64 {
-    let white = noise / (smoothing as f64).sqrt();
-    if averaged.len() < LEAST_AVERAGES * smoothing {
-        return white;
-    }
-    usual_deviation(averaged, baseline(averaged)).map_or(white, |seen| seen.max(white))
+fn averaged_noise(sums: &RunningSums, quiet: &Range<usize>, noise: f64, length: usize) -> f64 {
+    let seen = (quiet.len() / LEAST_AVERAGES).min(length).max(1);
+    let means = sums.means_in(quiet.clone(), seen | 1);
+    let longer = ((seen | 1) as f64 / length as f64).sqrt();
+    let white = noise / (length as f64).sqrt();
+    usual_deviation(&means, baseline(&means)).map_or(white, |own| white.max(own * longer))
 }
 
 /// Level of the signal outside contact, and whether it comes from the end: that

@@ -3,6 +3,7 @@
 use crate::noise::estimate::median_of;
 use crate::polynomial::fit_polynomial;
 use crate::trigger::scale::GAUSSIAN_OVER_MEDIAN;
+use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
 /// A zero is level if it changes by less than this part of the largest force; 1.
@@ -10,6 +11,9 @@ pub(crate) const LEVEL: f64 = 0.01;
 
 /// … or by no more than this many standard deviations of the change; 1.
 const EXPLAINED: f64 = 4.0;
+
+/// Means of the samples through which the line goes that tells whether they are level.
+const BLOCKS: usize = 50;
 
 /// Fewest samples of a part of what lies before contact.
 const LEAST: usize = 5;
@@ -61,14 +65,35 @@ pub(crate) fn quiet_stretch(
     before..before
 }
 
+/// Whether a straight line through the samples changes by little, or by no more than noise does.
+///
+/// Of many samples the line goes through the means of [`BLOCKS`] blocks. How far one such mean
+/// is from the next tells their noise, that which persists from sample to sample included, and
+/// hardly knows of a zero that moves slowly or of a few blocks that hold a contact.
 fn is_level(times: &[f64], values: &[f64], largest: f64) -> bool {
-    let Some(fit) = fit_polynomial(times, values, times[0], 1) else {
+    let block = (values.len() / BLOCKS).max(1);
+    let means = |samples: &[f64]| -> Vec<f64> {
+        let blocks = samples.chunks_exact(block);
+        blocks
+            .map(|own| own.iter().sum::<f64>() / block as f64)
+            .collect()
+    };
+    let (at, level) = (means(times), means(values));
+    let Some(fit) = fit_polynomial(&at, &level, times[0], 1) else {
         return true;
+    };
+    let sd = match block {
+        1 => fit.standard_deviations[1],
+        _ => {
+            let apart = level.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let noise = GAUSSIAN_OVER_MEDIAN * median_of(apart).unwrap_or(0.0) / SQRT_2;
+            // Of the slope of a line through evenly spaced points.
+            noise * (12.0 / level.len() as f64).sqrt() / (at[at.len() - 1] - at[0])
+        }
     };
     let duration = times[times.len() - 1] - times[0];
     let change = (fit.derivatives[1] * duration).abs();
-    let explained = EXPLAINED * fit.standard_deviations[1] * duration;
-    change <= LEVEL * largest || change.is_nan() || change <= explained
+    change <= LEVEL * largest || change.is_nan() || change <= EXPLAINED * sd * duration
 }
 
 /// How far the zero goes, one deviation, in as long as the quiet stretch lasts: root mean square

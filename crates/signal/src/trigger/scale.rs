@@ -16,7 +16,7 @@ const SMOOTHING_SHARE: f64 = 0.02;
 const SMOOTHING_LIMIT: f64 = 0.2;
 
 /// Part of the peak that the threshold from the noise is to stay below; 1.
-const THRESHOLD_AIM: f64 = 0.1;
+pub const THRESHOLD_AIM: f64 = 0.1;
 
 /// Times that an average is lengthened against noise.
 const QUIETER: usize = 8;

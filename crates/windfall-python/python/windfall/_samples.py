@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from io import BytesIO
 from typing import Any
 
@@ -41,11 +42,20 @@ def npy_of(samples: Mapping[str, Any]) -> bytes:
     for name, column in columns.items():
         if len(column) != length:
             raise ValueError(f"{name} has {len(column)} samples, and t has {length}")
-    table = np.empty(length, dtype=[(name, "<f8") for name in columns])
-    for name, column in columns.items():
-        table[name] = column
+    table = np.empty((length, len(columns)), dtype="<f8")
+    for place, column in enumerate(columns.values()):
+        table[:, place] = column
+    return _head(tuple(columns), length) + table.tobytes()
+
+
+@lru_cache
+def _head(names: tuple[str, ...], length: int) -> bytes:
+    """The head of such a file."""
+    columns = np.dtype([(name, "<f8") for name in names])
+    descr = np.lib.format.dtype_to_descr(columns)
     file = BytesIO()
-    np.save(file, table, allow_pickle=False)
+    head = {"descr": descr, "fortran_order": False, "shape": (length,)}
+    np.lib.format.write_array_header_1_0(file, head)
     return file.getvalue()
 
 
@@ -57,9 +67,9 @@ def _column(name: str, values: Any) -> Any:
         raise ValueError(f"{name}: expected one dimension, found the shape {column.shape}")
     if len(column) == 0:
         raise ValueError(f"{name}: expected samples, found none")
-    column = column.astype(np.float64)
-    lost = np.flatnonzero(~np.isfinite(column))
-    if len(lost):
+    column = np.asarray(column, dtype=np.float64)
+    if not np.isfinite(column).all():
+        lost = np.flatnonzero(~np.isfinite(column))
         raise ValueError(
             f"{name}: sample {lost[0]} is {column[lost[0]]}; leave out the rows of samples that "
             f"are missing ({len(lost)} of {len(column)})"
