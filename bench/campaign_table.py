@@ -1,6 +1,6 @@
 """Table of bench/campaign; needs the standard library only.
 
-    campaign_table.py PROGRAM [--recordings N] [--rounds N]
+    campaign_table.py PROGRAM [--recordings N] [--rounds N] [--in-python]
 """
 
 import argparse
@@ -16,6 +16,9 @@ from statistics import median
 
 # Processor time of windfall, seconds per thousand recordings.
 TARGET = 1.2
+
+# The same fit in Python; its result is not looked at.
+IN_PYTHON = "import sys, windfall; windfall.Campaign(sys.argv[1]).fit(threads=1)"
 
 LAW = "kuwabara-kono(k=394931, c=681)"
 REPEATS = 10
@@ -51,6 +54,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--recordings", type=int, default=1000)
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--in-python", action="store_true")
     asked = parser.parse_args()
     script = str(pathlib.Path(__file__).with_name("campaign_fit.py"))
     with tempfile.TemporaryDirectory() as scratch:
@@ -74,6 +78,12 @@ def main():
             store.unlink(missing_ok=True)
             rows["windfall, from text"].append(timed(fit, found))
             rows["windfall, from its store"].append(timed(fit))
+            if asked.in_python:
+                store.unlink()
+                same = timed([sys.executable, "-c", IN_PYTHON, str(campaign)])
+                rows.setdefault("windfall in Python", []).append(same)
+                start = timed([sys.executable, "-c", "import numpy"])
+                rows.setdefault("Python with NumPy, its start", []).append(start)
             rows["NumPy, SciPy, numba"].append(timed([sys.executable, script, str(campaign), table]))
 
         truth = {row["id"]: parameters(row["law"]) for row in read_table(campaign / "truth.csv")}

@@ -154,6 +154,13 @@ fn rejects_to_go_on_when_the_caller_stops_it() {
     let stopped = call(words, Arc::new(|_, _| ControlFlow::Break(())));
     assert_eq!((stopped.status, stopped.said.result.as_str()), (1, ""));
     assert!(!campaign.join("results.sqlite").exists());
+    // What was fitted until then is kept.
+    let after_twenty = |done, _| match done < 20 {
+        true => ControlFlow::Continue(()),
+        false => ControlFlow::Break(()),
+    };
+    let stopped = call(words, Arc::new(after_twenty));
+    assert_eq!((stopped.status, stopped.said.result.as_str()), (1, ""));
     let told = Arc::new(Mutex::new(Vec::new()));
     let list = Arc::clone(&told);
     let fitted = call(
@@ -164,6 +171,12 @@ fn rejects_to_go_on_when_the_caller_stops_it() {
         }),
     );
     assert_eq!(fitted.status, 0);
+    let messages = &fitted.said.messages;
+    let unchanged = messages
+        .split(", ")
+        .find_map(|part| part.split_once(" unchanged"));
+    let unchanged: usize = unchanged.unwrap().0.parse().unwrap();
+    assert!((20..30).contains(&unchanged), "{messages}");
     let told = told.lock().unwrap();
     let last = told.iter().max().unwrap();
     assert!(last.0 == last.1 && last.1 > 1, "{told:?}");

@@ -2,16 +2,18 @@
 //! a recording that fails does not stop the others.
 
 use crate::pipeline::request::{PENDING, Reuse};
+use crate::pipeline::saved_results::{Keyed, SavedResults};
 use crate::recording::digests::{Digests, recording_digests, run_origin};
 use crate::recording::read::recording_path;
 use crate::result::outcome::{ImpactOutcome, StatusOutcome};
 use crate::settings::kind::STORE_FILE;
 use crate::settings::model::{Campaign, ImpactEntry};
 use crate::store::documents::{DocumentRecord, StoredValue, find_documents};
-use crate::store::runs::{RunRecord, find_results, latest_run, write_run};
+use crate::store::runs::{RunRecord, find_results, latest_run, write_results, write_run};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use std::collections::HashSet;
 use std::mem::take;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -143,7 +145,8 @@ pub struct Evaluated<T> {
 ///
 /// What has not changed is answered from the store. A recording that cannot be
 /// used is reported and does not stop the others. Results do not depend on the
-/// number of threads.
+/// number of threads. They go into the store as they come: work that is stopped goes on
+/// where it was.
 ///
 /// # Errors
 /// The store cannot be used, or `progress` stopped the work.
@@ -173,7 +176,12 @@ pub fn evaluate<E: Evaluation>(
         )
         .collect();
     let stored = stored_results::<E::Found>(&store, reuse, &keys)?;
+    let keeps = !matches!(reuse, None | Some(Reuse::Only));
+    let saved = SavedResults::new(|found: &[Keyed<E::Found>]| write_found(campaign, &store, found));
     let results = for_each(progress, campaign.entries.len(), |position| {
+        if saved.failed() {
+            return Vec::new();
+        }
         let entry = &campaign.entries[position];
         let keys = match &keys[position] {
             Ok(keys) => keys,
@@ -195,8 +203,15 @@ pub fn evaluate<E: Evaluation>(
             }
             _ => evaluation.evaluate(entry, known),
         };
+        for ((was_known, result), key) in was_known.iter().zip(&results).zip(keys) {
+            if let (true, false, Ok(found)) = (keeps, was_known, result) {
+                saved.add(position, key, found);
+            }
+        }
         was_known.into_iter().zip(results).collect()
-    })?;
+    });
+    let saved = saved.finish(results.is_err())?;
+    let results = results?;
 
     let mut evaluated = Evaluated {
         items: Vec::with_capacity(results.len() * evaluation.parts()),
@@ -226,11 +241,24 @@ pub fn evaluate<E: Evaluation>(
         }
     }
     evaluated.status.failed = evaluated.failed.len();
-    match reuse {
-        None | Some(Reuse::Only) => {}
-        Some(_) => keep(evaluation, &store, kept, &mut evaluated)?,
+    if keeps {
+        keep(evaluation, &store, (kept, saved), &mut evaluated)?;
     }
     Ok(evaluated)
+}
+
+/// Writes results that belong to no run yet.
+fn write_found<T: Stored>(
+    campaign: &Campaign,
+    store: &Path,
+    found: &[Keyed<T>],
+) -> Result<(), Error> {
+    let mut records = RunRecord::unfinished();
+    for (position, key, found) in found {
+        let entry = &campaign.entries[*position];
+        found.add(&mut records, campaign, entry, key.clone())?;
+    }
+    write_results(store, &records)
 }
 
 /// An entry, or one law on it, that could not be evaluated.
@@ -272,11 +300,11 @@ fn stored_results<T: Stored>(
 
 /// Writes the run, unless the newest one in the store is the same.
 ///
-/// * `keys`: of the results, in their order
+/// * `keys`: of the results, in their order; and those that are in the store since this work began
 fn keep<E: Evaluation>(
     evaluation: &E,
     store: &Path,
-    keys: Vec<String>,
+    (keys, saved): (Vec<String>, HashSet<String>),
     evaluated: &mut Evaluated<E::Found>,
 ) -> Result<(), Error> {
     // A run of nothing but failures is reported, not kept.
@@ -292,6 +320,7 @@ fn keep<E: Evaluation>(
     let campaign = evaluation.campaign();
     let origin = run_origin(campaign, &evaluated.digests, evaluation.options())?;
     let mut run = RunRecord::new(origin, failed);
+    run.saved = saved;
     for ((position, item), key) in evaluated.items.iter().zip(keys) {
         item.add(&mut run, campaign, &campaign.entries[*position], key)?;
     }

@@ -2,3 +2,4 @@
 
 pub mod evaluate;
 pub mod request;
+mod saved_results;

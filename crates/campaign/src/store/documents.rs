@@ -102,22 +102,6 @@ pub fn find_documents<T: DeserializeOwned>(
     keys.iter().map(&mut find).collect()
 }
 
-/// Adds a document to a run; one that an earlier run has added is only named.
-pub(crate) fn insert_document_of_run(
-    transaction: &Transaction,
-    run: i64,
-    position: usize,
-    record: &DocumentRecord,
-) -> rusqlite::Result<()> {
-    insert_document(transaction, record)?;
-    execute(
-        transaction,
-        "INSERT INTO run_documents (run, position, key) VALUES (?1, ?2, ?3)",
-        params![run, position as i64, record.key],
-    )?;
-    Ok(())
-}
-
 /// Adds a document; one that is there and is not what was written is mended.
 pub(crate) fn insert_document(
     transaction: &Transaction,

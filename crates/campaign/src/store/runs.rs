@@ -8,12 +8,12 @@
 use crate::recording::digests::RunOrigin;
 use crate::result::outcome::ImpactOutcome;
 use crate::store::documents::{
-    DocumentRecord, document_digest, document_keys, find_documents, insert_document,
-    insert_document_of_run, mend_document,
+    DocumentRecord, document_digest, document_keys, find_documents, insert_document, mend_document,
 };
 use crate::store::file::{PATIENCE, WRITING, create_schema, execute, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use smol_str::SmolStr;
+use std::collections::HashSet;
 use std::path::Path;
 use windfall_files::confined::discard;
 use windfall_files::error::Error;
@@ -38,9 +38,20 @@ pub struct RunRecord<'a> {
     pub documents: Vec<DocumentRecord>,
     /// What could not be fitted.
     pub failures: Vec<FailureOutcome>,
+    /// Keys of results and documents that [`write_results`] has written: they are only named.
+    pub saved: HashSet<String>,
 }
 
 impl RunRecord<'_> {
+    /// Results of work that is not done.
+    pub(crate) fn unfinished() -> Self {
+        let origin = RunOrigin {
+            options: String::new(),
+            inputs: Vec::new(),
+        };
+        Self::new(origin, Vec::new())
+    }
+
     /// A run of now and of this windfall, without results yet.
     pub fn new(origin: RunOrigin, failures: Vec<FailureOutcome>) -> Self {
         Self {
@@ -51,6 +62,7 @@ impl RunRecord<'_> {
             results: Vec::new(),
             documents: Vec::new(),
             failures,
+            saved: HashSet::new(),
         }
     }
 }
@@ -106,6 +118,19 @@ pub fn count_runs(path: &Path) -> Result<usize, Error> {
 /// was before.
 pub fn write_run(path: &Path, run: &RunRecord) -> Result<(), Error> {
     write(path, &|transaction| insert_run(transaction, run))
+}
+
+/// Adds results and documents that belong to no run yet, in one transaction.
+///
+/// # Errors
+/// Those of [`write_run`].
+pub(crate) fn write_results(path: &Path, records: &RunRecord) -> Result<(), Error> {
+    write(path, &|transaction| {
+        let mut results = records.results.iter();
+        results.try_for_each(|(key, result)| insert_result(transaction, key, result))?;
+        let mut documents = records.documents.iter();
+        documents.try_for_each(|document| insert_document(transaction, document))
+    })
 }
 
 /// Adds a document that belongs to no run, in one transaction.
@@ -164,7 +189,9 @@ fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()
         )?;
     }
     for (position, (key, result)) in run.results.iter().enumerate() {
-        insert_result(transaction, key, result)?;
+        if !run.saved.contains(key) {
+            insert_result(transaction, key, result)?;
+        }
         execute(
             transaction,
             "INSERT INTO run_results (run, position, key) VALUES (?1, ?2, ?3)",
@@ -172,7 +199,14 @@ fn insert_run(transaction: &Transaction, run: &RunRecord) -> rusqlite::Result<()
         )?;
     }
     for (position, document) in run.documents.iter().enumerate() {
-        insert_document_of_run(transaction, id, position, document)?;
+        if !run.saved.contains(&document.key) {
+            insert_document(transaction, document)?;
+        }
+        execute(
+            transaction,
+            "INSERT INTO run_documents (run, position, key) VALUES (?1, ?2, ?3)",
+            params![id, position as i64, document.key],
+        )?;
     }
     for (position, failure) in run.failures.iter().enumerate() {
         execute(
@@ -353,6 +387,7 @@ mod tests {
                 .collect(),
             documents: Vec::new(),
             failures: Vec::new(),
+            saved: HashSet::new(),
         }
     }
 

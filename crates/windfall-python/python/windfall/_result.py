@@ -18,20 +18,27 @@ class Result:
     * `messages`: what else the command said, a message each
     """
 
-    __slots__ = ("_data", "messages")
-    _data: Any
+    __slots__ = ("_held", "messages")
+    _held: Any
     messages: tuple[str, ...]
 
-    def __init__(self, data: Any, messages: tuple[str, ...] = ()) -> None:
-        object.__setattr__(self, "_data", data)
+    def __init__(self, held: Any, messages: tuple[str, ...] = ()) -> None:
+        object.__setattr__(self, "_held", held)
         object.__setattr__(self, "messages", messages)
+
+    @property
+    def _data(self) -> Any:
+        """What is held: JSON, as text until it is first asked for."""
+        if isinstance(self._held, str):
+            object.__setattr__(self, "_held", json.loads(self._held))
+        return self._held
 
     @classmethod
     def from_json(cls, text: str, messages: tuple[str, ...] = ()) -> Result:
         """The result that a command printed."""
         if not text.startswith(("{", "[")):
             return cls({"text": text}, messages)
-        return cls(json.loads(text), messages)
+        return cls(text, messages)
 
     def to_dict(self) -> Any:
         """What `json.loads` makes of the command's JSON: dictionaries, lists and numbers."""
@@ -66,7 +73,7 @@ class Result:
         return self._data, self.messages
 
     def __setstate__(self, state: tuple[Any, tuple[str, ...]]) -> None:
-        object.__setattr__(self, "_data", state[0])
+        object.__setattr__(self, "_held", state[0])
         object.__setattr__(self, "messages", state[1])
 
     def __contains__(self, key: object) -> bool:
