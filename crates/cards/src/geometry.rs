@@ -26,7 +26,7 @@ pub struct RadiusRequest {
 }
 
 /// Radii of curvature; m.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RadiusOutcome {
     /// One principal radius; m.
     pub radius: f64,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub const CARD_FORMAT: i64 = 2;
 
 /// A law card; SI throughout.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LawCard {
     /// Version of the shape of the file.
@@ -43,7 +43,7 @@ pub struct LawCard {
 }
 
 /// The contact that a card's law belongs to; SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardContact {
     /// R*, of 1/R* = 1/R1 + 1/R2 (of Hertz's general contact where curvatures
@@ -56,7 +56,7 @@ pub struct CardContact {
 }
 
 /// How the parameters of a law differ from fruit to fruit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardPopulation {
     /// Of what: "ln k", "n".
@@ -79,7 +79,7 @@ pub struct CardPopulation {
 }
 
 /// Effect of a covariate on a parameter.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardCovariate {
     /// The covariate, such as "impact_velocity".
@@ -97,7 +97,7 @@ pub struct CardCovariate {
 }
 
 /// A user's law on a card.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardDefinition {
     /// Formula of the force in x (m) and v (m/s); N.
@@ -120,7 +120,7 @@ pub struct CardDefinition {
 }
 
 /// A parameter of a user's law on a card; SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardDefinedParameter {
     /// Name.
@@ -141,7 +141,7 @@ pub struct CardDefinedParameter {
 }
 
 /// A parameter of a card.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardParameter {
     /// Value.
@@ -155,7 +155,7 @@ pub struct CardParameter {
 }
 
 /// Covariance of a card.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardCovariance {
     /// Of what: "ln k", "e".
@@ -176,7 +176,7 @@ pub fn labels_of(names: &[String], logarithmic: &[bool]) -> Vec<String> {
 }
 
 /// Range in which a law was seen; SI.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardRange {
     /// Velocities at first touch; m/s.
@@ -198,7 +198,7 @@ pub fn range_of_values(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
 }
 
 /// Bodies of a card.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardBodies {
     /// What struck.
@@ -216,7 +216,7 @@ pub struct CardBodies {
 }
 
 /// Origin of a card.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CardOrigin {
     /// Title of the campaign.

@@ -58,7 +58,7 @@ pub struct TransferRequest {
 }
 
 /// A law in another geometry; SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TransferOutcome {
     /// The law there, as an expression.
     pub law: String,

@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 use windfall_numerics::unit::quantity::exponent_text;
 
 /// One parameter of a force law.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ParameterDescription {
     /// Name in law expressions, campaign files and results.
     pub name: &'static str,
@@ -82,7 +82,7 @@ impl ParameterDescription {
 }
 
 /// One force law.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LawDescription {
     /// Name in law expressions.
     pub name: &'static str,

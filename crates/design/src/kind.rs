@@ -18,7 +18,7 @@ pub const MOST_FACTORS: usize = 256;
 const ORDER_STREAM: u64 = 1;
 
 /// A factor with its coding: actual = centre + half · coded.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct Factor {
     /// Its name.
     pub name: String,

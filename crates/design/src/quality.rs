@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 pub const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Figures of a design for a model; variances in units of that of one run.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct DesignQuality {
     /// Runs, n.
     #[serde(skip)]

@@ -7,7 +7,7 @@ use windfall_identify::error::{Error, check_not_negative, check_positive};
 ///
 /// # Source
 /// Kang et al. (2023), INMATEH 71:63, fig. 1 and eqs. (4) to (6).
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct Plate {
     /// Mass, m_p; kg.
     pub mass: f64,

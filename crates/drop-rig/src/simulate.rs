@@ -19,7 +19,7 @@ use windfall_numerics::real_vector::compiled_for_vectors;
 const MOST_IMPACTS: usize = 100_000;
 
 /// Summary of one impact of a drop; SI, times from the release.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct DropImpact {
     /// First touch; s.
     pub onset_time: f64,

@@ -12,11 +12,12 @@ use windfall_scene_run::file::read::{ScenePlan, read_scene};
 use windfall_scene_run::file_error::make_directory;
 
 /// Contacts that were written.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct ContactsOutcome {
     /// The engine.
     pub engine: String,
     /// The file.
+    #[schema(value_type = String)]
     pub file: PathBuf,
     /// Each pair of materials.
     pub contacts: Vec<ContactTerms>,

@@ -27,7 +27,7 @@ pub(crate) struct Impact {
 }
 
 /// Restitution at a speed: of the law, and what an engine delivers of what it is given.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Delivered {
     /// Impact speed; m/s.
     pub speed: f64,

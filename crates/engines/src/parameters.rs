@@ -27,7 +27,7 @@ pub enum Other {
 }
 
 /// One contact in another engine's terms.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, utoipa::ToSchema)]
 pub struct ContactTerms {
     /// The two materials.
     pub between: [String; 2],

@@ -81,11 +81,12 @@ pub struct DeckRequest {
 }
 
 /// A deck that was written.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct DeckOutcome {
     /// Engine.
     pub engine: String,
     /// Files, the first of which the engine is given.
+    #[schema(value_type = Vec<String>)]
     pub files: Vec<PathBuf>,
     /// Steps.
     pub steps: u64,

@@ -11,7 +11,7 @@ use windfall_files::text::toml_source::suggestion;
 const PAGE: &str = include_str!("findings.md");
 
 /// A finding as the guide explains it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Explanation {
     /// Its code.
     pub code: String,

@@ -43,11 +43,13 @@ pub struct ReportRequest {
 }
 
 /// What was written.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct ReportOutcome {
     /// The page.
+    #[schema(value_type = String)]
     pub page: PathBuf,
     /// All files, the page among them.
+    #[schema(value_type = Vec<String>)]
     pub files: Vec<PathBuf>,
     /// Impacts in it.
     pub impacts: usize,

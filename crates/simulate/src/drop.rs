@@ -20,7 +20,7 @@ const MARGIN: f64 = 1.0;
 const MOST_SAMPLES: f64 = 5e6;
 
 /// A simulated drop; SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SimulatedDrop {
     /// The law.
     pub law: String,

@@ -1,8 +1,9 @@
 //! Simulated drops and their motions as text, CSV and JSON.
 
 use crate::drop::{SimulatedDrop, SimulatedDropMotion};
+use crate::motion::{MotionOutcome, MovingDrop};
 use crate::text::{
-    Column, Row, column, findings_text, motion_csv, number_or_blank, rows, six_digits, with_motion,
+    Column, Row, column, findings_text, motion_csv, number_or_blank, rows, samples, six_digits,
 };
 use windfall_drop_rig::rig::Plate;
 use windfall_drop_rig::simulate::DropImpact;
@@ -142,7 +143,10 @@ pub fn csv_of_drop_motion(motion: &SimulatedDropMotion) -> Result<String, Error>
     motion_csv(&motion_columns(motion))
 }
 
-/// A drop and its motion as JSON: the keys of the drop, and `motion`.
-pub fn json_of_drop_motion(motion: &SimulatedDropMotion) -> serde_json::Value {
-    with_motion(serde_json::json!(motion.drop), &motion_columns(motion))
+/// A drop and its motion as JSON shows them: the keys of the drop, and `motion`.
+pub fn outcome_of_drop_motion(motion: &SimulatedDropMotion) -> MotionOutcome {
+    MotionOutcome::Drop(MovingDrop {
+        drop: motion.drop.clone(),
+        motion: samples(&motion_columns(motion)),
+    })
 }

@@ -18,7 +18,7 @@ use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 
 /// The body in results; SI.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct BodyOutcome {
     /// "offset-disc" or "ellipse".
     pub shape: &'static str,
@@ -45,7 +45,7 @@ pub struct BodyOutcome {
 }
 
 /// A simulated drop of a planar body; SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SimulatedEccentricDrop {
     /// The law.
     pub law: String,

@@ -2,7 +2,8 @@
 
 use crate::drop_text::{given, impact_csv, impact_table, plate_text, rows_of};
 use crate::eccentric::{BodyOutcome, SimulatedEccentricDrop};
-use crate::text::{Column, Row, motion_csv, rows, with_motion};
+use crate::motion::{MotionOutcome, MovingBody};
+use crate::text::{Column, Row, motion_csv, rows, samples};
 use windfall_drop_rig::eccentric::impact::EccentricImpact;
 use windfall_drop_rig::eccentric::simulate::EccentricTrajectory;
 use windfall_files::error::Error;
@@ -106,10 +107,13 @@ pub fn csv_of_eccentric_motion(motion: &EccentricTrajectory) -> Result<String, E
     motion_csv(&motion_columns(motion))
 }
 
-/// A drop and its motion as JSON: the keys of the drop, and `motion`.
-pub fn json_of_eccentric_motion(
+/// A drop and its motion as JSON shows them: the keys of the drop, and `motion`.
+pub fn outcome_of_eccentric_motion(
     drop: &SimulatedEccentricDrop,
     motion: &EccentricTrajectory,
-) -> serde_json::Value {
-    with_motion(serde_json::json!(drop), &motion_columns(motion))
+) -> MotionOutcome {
+    MotionOutcome::Body(MovingBody {
+        drop: drop.clone(),
+        motion: samples(&motion_columns(motion)),
+    })
 }

@@ -15,7 +15,7 @@ use windfall_identify::rig::simulate::{ImpactSummary, Trajectory, simulate_rig, 
 const MARGIN: f64 = 0.25;
 
 /// One simulated impact: the keys of the JSON that scripts rely on; SI.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SimulatedImpact {
     /// The law with all its parameters.
     pub law: String,

@@ -11,6 +11,7 @@ pub mod example;
 pub mod figure;
 pub mod files;
 pub mod impact;
+pub mod motion;
 mod new_campaign;
 pub mod repeats;
 pub mod request;

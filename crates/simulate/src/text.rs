@@ -1,9 +1,9 @@
 //! Simulated impacts and motions as text, CSV and JSON.
 
 use crate::impact::{SimulatedImpact, SimulatedMotion};
+use crate::motion::{MotionOutcome, MovingImpact, Samples};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::Named;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::table::table_text;
 
@@ -130,10 +130,13 @@ pub fn csv_of_motion(motion: &SimulatedMotion) -> Result<String, Error> {
     motion_csv(&motion_columns(motion))
 }
 
-/// A simulated motion with its summary as JSON.
-pub fn json_of_motion(motion: &SimulatedMotion) -> serde_json::Value {
-    let impact = serde_json::json!({ "simulated": true, "impact": motion.impact });
-    with_motion(impact, &motion_columns(motion))
+/// A simulated motion with its summary, as JSON shows it.
+pub fn outcome_of_motion(motion: &SimulatedMotion) -> MotionOutcome {
+    MotionOutcome::Impact(MovingImpact {
+        simulated: true,
+        impact: motion.impact.clone(),
+        motion: samples(&motion_columns(motion)),
+    })
 }
 
 /// A cell of a table; blank where there is no value.
@@ -159,12 +162,12 @@ pub(crate) fn motion_csv(columns: &[Column]) -> Result<String, Error> {
     csv_text(&header, (0..samples).map(|i| row(i).collect()))
 }
 
-/// The keys of a drop, and `motion`.
-pub(crate) fn with_motion(mut drop: serde_json::Value, columns: &[Column]) -> serde_json::Value {
-    let columns = columns.iter().map(|(name, _, values)| (*name, *values));
-    if let Some(keys) = drop.as_object_mut() {
-        let columns = serde_json::json!(columns.collect::<Named<_>>());
-        keys.insert("motion".to_owned(), columns);
-    }
-    drop
+/// Columns under their names.
+pub(crate) fn samples(columns: &[Column]) -> Samples {
+    let columns = columns.iter();
+    Samples(
+        columns
+            .map(|(name, _, values)| (*name, values.to_vec()))
+            .collect(),
+    )
 }

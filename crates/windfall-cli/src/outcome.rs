@@ -1,6 +1,7 @@
 //! What each command answers as JSON, and what that is called.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 use windfall_campaign::impacts::shard::ShardOutcome;
 use windfall_cards::geometry::RadiusOutcome;
 use windfall_cards::law_card::LawCard;
@@ -11,6 +12,7 @@ use windfall_drop::calibrate::outcome::CalibrateOutcome;
 use windfall_drop::intervals::outcome::BouncesOutcome;
 use windfall_engines::contacts::ContactsOutcome;
 use windfall_engines::run::DeckOutcome;
+use windfall_files::text::result_schema::{ResultSchema, result_schema};
 use windfall_inspect::gather::add::Added;
 use windfall_inspect::gather::new::Gathered;
 use windfall_inspect::gather::preset::Preset;
@@ -30,6 +32,7 @@ use windfall_scene_run::study::outcome::StudyOutcome;
 use windfall_simulate::drop::SimulatedDrop;
 use windfall_simulate::eccentric::SimulatedEccentricDrop;
 use windfall_simulate::impact::SimulatedImpact;
+use windfall_simulate::motion::MotionOutcome;
 use windfall_tables::compare::agreement::AgreementOutcome;
 use windfall_tables::compare::outcome::CompareOutcome;
 use windfall_tables::compare::summary::SummaryOutcome;
@@ -38,7 +41,7 @@ use windfall_tables::regress::run::AnyRegressOutcome;
 use windfall_tables::surface::outcome::SurfaceOutcome;
 
 /// A result that a command shows: an object as JSON, with all numbers SI.
-pub trait Outcome: Serialize {
+pub trait Outcome: Serialize + ToSchema {
     /// What its JSON is called, with the version of its shape. A key that is added leaves the
     /// version as it is; one that changes its name or meaning, or goes, does not.
     const SCHEMA: &'static str;
@@ -53,7 +56,7 @@ pub trait Outcome: Serialize {
 }
 
 /// Recordings that a simulation wrote.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct WrittenRecordings {
     /// The campaign.
     pub directory: String,
@@ -64,42 +67,42 @@ pub struct WrittenRecordings {
 }
 
 /// Files of a template, or manual pages.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct WrittenFiles {
     /// Their paths.
     pub written: Vec<String>,
 }
 
 /// Inspected recordings.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct Inspections {
     /// One for each.
     pub files: Vec<Inspection>,
 }
 
 /// Presets of programs that write recordings.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct Presets {
     /// One for each program.
     pub presets: Vec<Preset>,
 }
 
 /// Force laws.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct Laws {
     /// One for each.
     pub laws: Vec<LawCardText>,
 }
 
 /// What findings mean.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct Explanations {
     /// One for each finding.
     pub findings: Vec<Explanation>,
 }
 
 /// Parts of the program.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct Licences {
     /// Crates, packages of the page, fonts.
     pub parts: Vec<Part>,
@@ -108,7 +111,7 @@ pub struct Licences {
 }
 
 /// A part of the program.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct Part {
     /// What it is called.
     pub name: &'static str,
@@ -123,7 +126,7 @@ pub struct Part {
 }
 
 /// The text of a licence.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub struct LicenceText {
     /// The parts that it belongs to.
     pub parts: &'static str,
@@ -131,67 +134,90 @@ pub struct LicenceText {
     pub text: &'static str,
 }
 
-/// A motion, with the samples of all its quantities.
-#[derive(Debug, Serialize)]
-#[serde(transparent)]
-pub struct Motion(pub serde_json::Value);
+/// A kind of result.
+#[derive(Clone, Copy, Debug)]
+pub struct ResultKind {
+    /// What its JSON is called, with the version of its shape.
+    pub schema: &'static str,
+    /// What it is, for people.
+    pub title: &'static str,
+    /// Its keys.
+    pub described: fn() -> ResultSchema,
+}
 
-/// Says what the JSON of each result is called.
+impl ResultKind {
+    /// What it is called, without the version.
+    pub fn name(&self) -> &'static str {
+        self.schema.split_once('/').map_or(self.schema, |own| own.0)
+    }
+}
+
+/// Says what the JSON of each result is called, and which command answers it.
 macro_rules! outcomes {
-    ($($schema:literal: $outcome:ty,)*) => {
+    ($($schema:literal: $outcome:ty = $command:literal $({ $($own:item)* })?,)*) => {
         $(impl Outcome for $outcome {
             const SCHEMA: &'static str = $schema;
+            $($($own)*)?
         })*
+
+        /// All results.
+        pub const RESULTS: &[ResultKind] = &[
+            $(ResultKind {
+                schema: $schema,
+                title: concat!("JSON of windfall ", $command),
+                described: || {
+                    let title = concat!("JSON of windfall ", $command);
+                    result_schema::<$outcome>($schema, title)
+                },
+            },)*
+        ];
     };
 }
 
 outcomes! {
-    "add/1": Added,
-    "bounces/1": BouncesOutcome,
-    "bruise/1": BruiseVolumes,
-    "calibrate/1": CalibrateOutcome,
-    "card/1": LawCard,
-    "card-laws/1": Laws,
-    "card-library/1": LibraryOutcome,
-    "card-transfer/1": TransferOutcome,
-    "compare/1": CompareOutcome,
-    "compare-agreement/1": AgreementOutcome,
-    "design/1": DesignDocument,
-    "explain/2": Explanations,
-    "fit-shard/1": ShardOutcome,
-    "inspect/1": Inspections,
-    "inspect-presets/2": Presets,
-    "laws/1": LawsOutcome,
-    "licences/1": Licences,
-    "written/1": WrittenFiles,
-    "new-from/1": Gathered,
-    "plan/1": PlanOutcome,
-    "plan-achieved/1": AchievedOutcome,
-    "population/1": PopulationOutcome,
-    "radius/1": RadiusOutcome,
-    "regress/1": AnyRegressOutcome,
-    "report/1": ReportOutcome,
-    "scene-contacts/1": ContactsOutcome,
-    "scene-deck/1": DeckOutcome,
-    "scene-picture/1": PictureOutcome,
-    "scene-run/1": SceneOutcome,
-    "scene-study/1": StudyOutcome,
-    "scene-table/1": TableOutcome,
-    "scene-vtk/1": VtkOutcome,
-    "simulate-drop/1": SimulatedDrop,
-    "simulate-eccentric-drop/1": SimulatedEccentricDrop,
-    "simulate-impact/1": SimulatedImpact,
-    "simulate-motion/1": Motion,
-    "simulate-recordings/1": WrittenRecordings,
-    "summary/1": SummaryOutcome,
-    "surface/1": SurfaceOutcome,
-}
-
-impl Outcome for AnyOutcome {
-    const SCHEMA: &'static str = "fit/1";
-
-    // Compiled where all of its parts are.
-    fn json(&self) -> serde_json::Result<String> {
-        Self::json(self)
-    }
+    "add/1": Added = "add",
+    "bounces/1": BouncesOutcome = "bounces",
+    "bruise/1": BruiseVolumes = "bruise",
+    "calibrate/1": CalibrateOutcome = "calibrate",
+    "card/1": LawCard = "card show --file",
+    "card-laws/1": Laws = "card show --laws",
+    "card-library/1": LibraryOutcome = "card show --library",
+    "card-transfer/1": TransferOutcome = "card transfer",
+    "compare/1": CompareOutcome = "compare",
+    "compare-agreement/1": AgreementOutcome = "compare --measured",
+    "design/1": DesignDocument = "design",
+    "explain/2": Explanations = "explain",
+    "fit/1": AnyOutcome = "fit" {
+        // Compiled where all of its parts are.
+        fn json(&self) -> serde_json::Result<String> {
+            Self::json(self)
+        }
+    },
+    "fit-shard/1": ShardOutcome = "fit --shard",
+    "inspect/1": Inspections = "inspect",
+    "inspect-presets/2": Presets = "inspect --presets",
+    "laws/1": LawsOutcome = "laws",
+    "licences/1": Licences = "licences",
+    "written/1": WrittenFiles = "new and man: files that were written",
+    "new-from/1": Gathered = "new --from",
+    "plan/1": PlanOutcome = "plan",
+    "plan-achieved/1": AchievedOutcome = "plan achieved",
+    "population/1": PopulationOutcome = "population",
+    "radius/1": RadiusOutcome = "radius",
+    "regress/1": AnyRegressOutcome = "regress",
+    "report/1": ReportOutcome = "report",
+    "scene-contacts/1": ContactsOutcome = "scene export: contacts",
+    "scene-deck/1": DeckOutcome = "scene export: a deck",
+    "scene-picture/1": PictureOutcome = "scene picture",
+    "scene-run/1": SceneOutcome = "scene run",
+    "scene-study/1": StudyOutcome = "scene study",
+    "scene-table/1": TableOutcome = "scene table",
+    "scene-vtk/1": VtkOutcome = "scene vtk",
+    "simulate-drop/1": SimulatedDrop = "simulate drop",
+    "simulate-eccentric-drop/1": SimulatedEccentricDrop = "simulate drop --offset or --semi-axes",
+    "simulate-impact/1": SimulatedImpact = "simulate impact",
+    "simulate-motion/1": MotionOutcome = "simulate: a motion",
+    "simulate-recordings/1": WrittenRecordings = "simulate: a campaign of recordings",
+    "summary/1": SummaryOutcome = "summary",
+    "surface/1": SurfaceOutcome = "surface",
 }

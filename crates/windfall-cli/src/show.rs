@@ -3,7 +3,7 @@
 
 use crate::args::format::{Format, Shown};
 use crate::caller::take_down;
-use crate::outcome::{Motion, Outcome, WrittenRecordings};
+use crate::outcome::{Outcome, WrittenRecordings};
 use crate::saying::{Saying, saying};
 use anyhow::Context;
 use std::io::{ErrorKind, Write};
@@ -15,6 +15,7 @@ use windfall_files::provenance::VERSION;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::quote::{command, path_word};
 use windfall_files::write_file::{check_target, write_whole};
+use windfall_simulate::motion::MotionOutcome;
 
 /// Writes a result. A reader that has heard enough (`| head`) is no error.
 pub fn write_result(text: &str) -> anyhow::Result<()> {
@@ -112,12 +113,13 @@ pub fn json_of<T: Outcome>(outcome: &T) -> anyhow::Result<String> {
 pub fn show_motion(
     shown: &Shown,
     (summary, samples): (String, usize),
-    json: impl Fn() -> serde_json::Value,
+    outcome: impl FnOnce() -> MotionOutcome,
     csv: impl Fn() -> Result<String, Error>,
 ) -> anyhow::Result<()> {
-    let text =
-        |_: &Motion| format!("{summary}\nThe motion, {samples} samples: --format csv or json.\n");
-    show(shown, || Ok::<_, Error>(Motion(json())), text, |_| csv())?;
+    let text = |_: &MotionOutcome| {
+        format!("{summary}\nThe motion, {samples} samples: --format csv or json.\n")
+    };
+    show(shown, || Ok::<_, Error>(outcome()), text, |_| csv())?;
     Ok(())
 }
 

@@ -61,7 +61,7 @@ impl Shard {
 }
 
 /// What came of a part.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ShardOutcome {
     /// Version of windfall.
     pub windfall: String,
@@ -74,6 +74,7 @@ pub struct ShardOutcome {
     /// What could not be fitted.
     pub failed: Vec<FailureOutcome>,
     /// The file.
+    #[schema(value_type = String)]
     pub file: PathBuf,
 }
 

@@ -80,7 +80,7 @@ pub struct ValueFile {
 }
 
 /// A published regression: a sum of terms.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LibraryModel {
     /// What it gives.
@@ -97,7 +97,7 @@ pub struct LibraryModel {
 }
 
 /// A coefficient and the variables it multiplies.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LibraryTerm {
     /// The coefficient; SI.
@@ -107,7 +107,7 @@ pub struct LibraryTerm {
 }
 
 /// A variable of a regression.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LibraryVariable {
     /// Its symbol.

@@ -12,7 +12,7 @@ use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::table::table_text;
 
 /// A force law, as JSON shows it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LawCardText {
     /// Description of the law.
     #[serde(flatten)]

@@ -19,7 +19,7 @@ pub struct LibraryRequest {
 }
 
 /// Entries, and what their regressions give.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LibraryOutcome {
     /// The entries.
     pub entries: Vec<LibraryEntry>,
@@ -28,7 +28,7 @@ pub struct LibraryOutcome {
 }
 
 /// What the regressions of one entry give at one place.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct Evaluated {
     /// Name of the entry.
     pub entry: String,
@@ -43,7 +43,7 @@ pub struct Evaluated {
 }
 
 /// A number with its name.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct NamedValue {
     /// The name.
     pub name: String,

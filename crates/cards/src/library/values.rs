@@ -12,7 +12,7 @@ use windfall_files::text::toml_source::{TomlSource, parse_source};
 use windfall_numerics::unit::quantity::{parse_as, parse_quantity, parse_unit};
 
 /// One publication's values for one body.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LibraryEntry {
     /// Name to ask for it.
     pub name: String,
@@ -53,7 +53,7 @@ impl LibraryEntry {
 }
 
 /// One published value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LibraryValue {
     /// What it is.
     pub quantity: String,

@@ -7,7 +7,7 @@ use crate::simulate::DropImpact;
 /// Energies balance: kinetic before + `height_energy` = kinetic after +
 /// `contact_energy` + `sliding_energy` + `support_energy` +
 /// `plate_energy_change`.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct EccentricImpact {
     /// As for a central impact; velocities, restitution and absorbed energy
     /// are those of the centre of mass along the normal, the impact velocity

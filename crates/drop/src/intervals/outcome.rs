@@ -6,7 +6,7 @@ use serde::Serialize;
 use windfall_files::found::FindingOutcome;
 
 /// Drops, and what they say together.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct BouncesOutcome {
     /// Acceleration of gravity; m/s².
     pub gravity: f64,
@@ -29,7 +29,7 @@ pub struct BouncesOutcome {
 }
 
 /// One drop.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TimedDropOutcome {
     /// What it is called.
     pub drop: String,
@@ -57,7 +57,7 @@ pub struct TimedDropOutcome {
 }
 
 /// One impact.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct TimedImpactOutcome {
     /// Its number; the drop ends in impact 1.
     pub impact: usize,
@@ -72,7 +72,7 @@ pub struct TimedImpactOutcome {
 }
 
 /// Restitution over drops, or over the impacts of a single one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct MeanOutcome {
     /// "drops" or "impacts": what the spread is between.
     pub over: &'static str,

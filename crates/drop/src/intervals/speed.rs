@@ -20,7 +20,7 @@ const FEWEST_DROPS: usize = 3;
 const LARGEST_ERROR_PART: f64 = 1e-3;
 
 /// A straight line of restitution over speed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SpeedOutcome {
     /// Restitution at the mean speed; 1.
     pub restitution: f64,

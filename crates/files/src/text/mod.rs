@@ -9,6 +9,7 @@ pub mod file_quantity;
 pub mod file_schema;
 pub mod number;
 pub mod quote;
+pub mod result_schema;
 pub mod spanned;
 pub mod statistic;
 pub mod table;

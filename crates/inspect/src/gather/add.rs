@@ -26,7 +26,7 @@ use windfall_files::write_file::edit_file;
 const CHUNK: usize = 1 << 20;
 
 /// Recordings that were added.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Added {
     /// Ids of the new impacts.
     pub impacts: Vec<String>,

@@ -21,9 +21,10 @@ use windfall_files::table::write::csv_text;
 use windfall_formats::open::{OpenOptions, open};
 
 /// A campaign that was made of recordings.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct Gathered {
     /// Files written.
+    #[schema(value_type = Vec<String>)]
     pub written: Vec<PathBuf>,
     /// Recordings that were copied.
     pub recordings: usize,

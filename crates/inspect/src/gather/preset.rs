@@ -13,7 +13,7 @@ use windfall_files::text::toml_source::suggestion;
 const TABLE: &str = include_str!("presets.toml");
 
 /// Columns of the exports of one program.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize, utoipa::ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
     /// By what it is asked for.

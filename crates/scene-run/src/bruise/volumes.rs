@@ -12,7 +12,7 @@ use windfall_scene::bruise::damage::{cap_volume, cap_volume_with_bulge, half_ell
 use windfall_statistics::table::Cells;
 
 /// Volumes of one bruise; m³.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct BruiseVolumes {
     /// Cap of a sphere below the plane through its edge.
     pub cap: f64,

@@ -15,11 +15,12 @@ use windfall_files::sheet::form::Form;
 use windfall_files::sheet::write::{TableWriter, write_table};
 
 /// A table that was written.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct TableOutcome {
     /// Rows.
     pub rows: u64,
     /// The file.
+    #[schema(value_type = String)]
     pub file: PathBuf,
 }
 

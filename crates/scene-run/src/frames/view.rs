@@ -28,7 +28,7 @@ pub struct PictureRequest {
 }
 
 /// What was drawn.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct PictureOutcome {
     /// When; s.
     pub time: f64,
@@ -37,15 +37,17 @@ pub struct PictureOutcome {
     /// What stands below it.
     pub caption: String,
     /// Files written.
+    #[schema(value_type = Vec<String>)]
     pub files: Vec<PathBuf>,
 }
 
 /// Files for ParaView.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct VtkOutcome {
     /// Frames.
     pub frames: usize,
     /// The file to be opened.
+    #[schema(value_type = String)]
     pub collection: PathBuf,
     /// Files beside it.
     pub files: usize,

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use windfall_files::found::FindingOutcome;
 
 /// Results of a study; SI throughout.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct StudyOutcome {
     /// As the file has it.
     pub title: String,
@@ -28,15 +28,17 @@ pub struct StudyOutcome {
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
     /// Files written.
+    #[schema(value_type = Vec<String>)]
     pub files: Vec<PathBuf>,
 }
 
 /// One combination of levels.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, utoipa::ToSchema)]
 pub struct VariantOutcome {
     /// Names of its levels.
     pub name: String,
     /// Its directory in that of the study.
+    #[schema(value_type = String)]
     pub directory: PathBuf,
     /// Why there is no result.
     pub failed: Option<String>,
@@ -57,7 +59,7 @@ pub struct VariantOutcome {
 }
 
 /// What a level changes.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct EffectOutcome {
     /// What was varied.
     pub factor: String,

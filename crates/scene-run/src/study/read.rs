@@ -30,7 +30,7 @@ pub struct StudyPlan {
 }
 
 /// What is varied.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct Factor {
     pub name: String,
     pub levels: Vec<String>,

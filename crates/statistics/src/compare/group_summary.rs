@@ -32,7 +32,7 @@ pub struct Groups {
 }
 
 /// What the values of a group look like.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct GroupSummary {
     /// The levels in one text; "all" without grouping columns.
     pub group: String,

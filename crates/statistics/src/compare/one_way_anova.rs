@@ -7,7 +7,7 @@ use windfall_distribution::tail::f_upper;
 use windfall_numerics::double_double::DoubleDouble;
 
 /// One-way analysis of variance.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct OneWayAnova {
     /// Sum of squares between groups; squared unit of the values.
     pub between_ss: f64,
@@ -30,7 +30,7 @@ pub struct OneWayAnova {
 }
 
 /// A ratio of variances and its probability.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, utoipa::ToSchema)]
 pub struct FTest {
     /// The ratio.
     pub f: f64,

@@ -32,7 +32,7 @@ pub struct AgreementRequest {
 }
 
 /// Distances between predicted and measured values.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct AgreementOutcome {
     /// Column of measured values.
     pub measured: String,

@@ -7,7 +7,7 @@ use windfall_statistics::compare::group_summary::GroupSummary;
 use windfall_statistics::compare::one_way_anova::{FTest, OneWayAnova};
 
 /// Groups compared.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct CompareOutcome {
     /// The column of values.
     pub value: String,
@@ -43,7 +43,7 @@ pub struct CompareOutcome {
 }
 
 /// A group with the letters that say from which it differs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct LetteredGroup {
     /// What its values look like.
     #[serde(flatten)]
@@ -53,7 +53,7 @@ pub struct LetteredGroup {
 }
 
 /// A statistic and its probability.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct StatisticTest {
     /// The statistic.
     pub statistic: f64,
@@ -64,7 +64,7 @@ pub struct StatisticTest {
 }
 
 /// Two groups.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct PairOutcome {
     /// The first group.
     pub first: String,

@@ -49,7 +49,7 @@ pub struct SummaryRequest {
 const MOST_FIGURES: usize = 24;
 
 /// Every group of every value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct SummaryOutcome {
     /// Columns that group the rows.
     pub by: Vec<String>,
@@ -62,7 +62,7 @@ pub struct SummaryOutcome {
 }
 
 /// The groups of one value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ValueSummary {
     /// The column.
     pub value: String,

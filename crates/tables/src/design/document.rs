@@ -12,7 +12,7 @@ use windfall_files::found::FindingOutcome;
 pub const ALIAS_ORDER: usize = 2;
 
 /// A design for scripts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct DesignDocument {
     /// Its kind.
     pub kind: String,
@@ -39,7 +39,7 @@ pub struct DesignDocument {
 }
 
 /// A factor with its letter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FactorDocument {
     /// Its letter in models.
     pub letter: String,
@@ -49,7 +49,7 @@ pub struct FactorDocument {
 }
 
 /// A run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct RunDocument {
     /// Place in the run order, from 1.
     pub run: usize,
@@ -68,7 +68,7 @@ pub struct RunDocument {
 }
 
 /// What a factor is set to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 #[serde(untagged)]
 pub enum Setting {
     /// A number.
@@ -78,7 +78,7 @@ pub enum Setting {
 }
 
 /// A fraction of two levels.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct FractionDocument {
     /// Generators, "D=AB".
     pub generators: Vec<String>,
@@ -91,7 +91,7 @@ pub struct FractionDocument {
 }
 
 /// Figures of a design; variances in units of the variance of one run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct QualityDocument {
     /// Columns of the model.
     pub terms: Vec<String>,

@@ -14,6 +14,7 @@ use crate::args::population::PopulationArguments;
 use crate::args::regress::RegressArguments;
 use crate::args::report::ReportArguments;
 use crate::args::scene::SceneCommand;
+use crate::args::schema::SchemaArguments;
 use crate::args::serve::ServeArguments;
 use crate::args::simulate::SimulateArguments;
 use crate::args::surface::SurfaceArguments;
@@ -118,7 +119,8 @@ pub enum Command {
     Card(CardArguments),
     /// Explain findings: what they mean and what to do
     Explain(ExplainArguments),
-    /// Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete
+    /// Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete, or of
+    /// the JSON of a command
     Schema(SchemaArguments),
     /// Write shell completions to standard output
     Completions {
@@ -211,19 +213,6 @@ pub enum NewKind {
     Scene,
     /// Variants of a scene, compared: pads and drop heights
     SceneStudy,
-}
-
-/// `windfall schema`
-#[derive(Debug, Args)]
-#[command(after_help = "Example:
-  windfall schema pendulum --out my-campaign/campaign.schema.json
-      and as the first line of campaign.toml: #:schema ./campaign.schema.json")]
-pub struct SchemaArguments {
-    /// Kind of rig, a scene, or a study of scenes
-    pub kind: NewKind,
-    /// Write it into this file
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub out: Option<PathBuf>,
 }
 
 /// `windfall explain`

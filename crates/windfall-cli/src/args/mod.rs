@@ -17,6 +17,7 @@ pub mod regress;
 pub mod report;
 pub mod scene;
 pub(crate) mod scene_view;
+pub(crate) mod schema;
 pub mod serve;
 pub mod simulate;
 pub mod surface;

@@ -21,7 +21,7 @@ use windfall_simulate::request::instrument::{instrument_of_carriage, instrument_
 use windfall_simulate::request::recordings::simulate_recordings;
 use windfall_simulate::taps::simulate_taps;
 use windfall_simulate::text::{
-    csv_of_motion, csv_of_simulation, json_of_motion, text_of_simulation,
+    csv_of_motion, csv_of_simulation, outcome_of_motion, text_of_simulation,
 };
 
 /// Simulates one event.
@@ -119,7 +119,7 @@ fn motion(event: &Event, rate: &str, shown: &Shown) -> anyhow::Result<()> {
             text_of_simulation(&motion.impact),
             motion.trajectory.times.len(),
         ),
-        || json_of_motion(&motion),
+        || outcome_of_motion(&motion),
         || csv_of_motion(&motion),
     )
 }

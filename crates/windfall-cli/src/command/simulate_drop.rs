@@ -7,12 +7,12 @@ use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_simulate::drop::{simulate_drop_motion, simulate_one_drop};
 use windfall_simulate::drop_text::{
-    csv_of_drop, csv_of_drop_motion, json_of_drop_motion, text_of_drop,
+    csv_of_drop, csv_of_drop_motion, outcome_of_drop_motion, text_of_drop,
 };
 use windfall_simulate::drops::simulate_drops;
 use windfall_simulate::eccentric::{eccentric_motion, simulate_one_eccentric_drop};
 use windfall_simulate::eccentric_text::{
-    csv_of_eccentric_drop, csv_of_eccentric_motion, json_of_eccentric_motion,
+    csv_of_eccentric_drop, csv_of_eccentric_motion, outcome_of_eccentric_motion,
     text_of_eccentric_drop,
 };
 use windfall_simulate::request::drop::{DropPlan, drop_plan};
@@ -43,7 +43,7 @@ fn motion(plan: &DropPlan, arguments: &SimulateDropArguments, rate: &str) -> any
     show_motion(
         &arguments.shown,
         (text_of_drop(&motion.drop), motion.trajectory.times.len()),
-        || json_of_drop_motion(&motion),
+        || outcome_of_drop_motion(&motion),
         || csv_of_drop_motion(&motion),
     )
 }
@@ -82,7 +82,7 @@ fn eccentric(plan: &DropPlan, arguments: &SimulateDropArguments) -> anyhow::Resu
     show_motion(
         &arguments.shown,
         (text_of_eccentric_drop(&drop), motion.times.len()),
-        || json_of_eccentric_motion(&drop, &motion),
+        || outcome_of_eccentric_motion(&drop, &motion),
         || csv_of_eccentric_motion(&motion),
     )
 }
