@@ -104,6 +104,7 @@ pub struct CardDefinition {
     pub force: Option<String>,
     /// Formula below the largest displacement so far, where the law has memory; N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub unloading: Option<String>,
     /// Displacements of a table; m.
     #[serde(rename = "displacement_m")]

@@ -18,6 +18,7 @@ pub struct ParameterDescription {
     pub lower: f64,
     /// Largest legal value; SI. In JSON null where there is no bound.
     #[serde(serialize_with = "bound")]
+    #[schema(value_type = Option<f64>)]
     pub upper: f64,
     /// Typical value for fruit, the starting point when nothing better is
     /// known; SI.

@@ -39,20 +39,26 @@ pub struct DropImpact {
     /// When it is reached; s.
     pub time_of_max_displacement: f64,
     /// When the force is back at zero; s.
+    #[schema(value_type = Option<f64>)]
     pub force_end_time: f64,
     /// When the gap between fruit and plate opens; s.
+    #[schema(value_type = Option<f64>)]
     pub separation_time: f64,
     /// Velocity of the fruit then, up positive; m/s.
+    #[schema(value_type = Option<f64>)]
     pub separation_velocity: f64,
     /// Speed of the fruit at separation over that at onset; 1.
+    #[schema(value_type = Option<f64>)]
     pub restitution: f64,
     /// Speed at which the point of contact leaves the plate over the speed of
     /// approach; 1.
+    #[schema(value_type = Option<f64>)]
     pub contact_restitution: f64,
     /// Integral of the contact force; N s.
     pub impulse: f64,
     /// Energy that the fruit's centre of mass loses: kinetic, and of height
     /// from onset to separation; J.
+    #[schema(value_type = Option<f64>)]
     pub absorbed_energy: f64,
 }
 

@@ -12,16 +12,22 @@ pub struct Coefficient {
     /// Its value.
     pub estimate: f64,
     /// Its standard error.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Estimate over standard error.
+    #[schema(value_type = Option<f64>)]
     pub t: f64,
     /// Probability of |t| or more if the coefficient were zero.
+    #[schema(value_type = Option<f64>)]
     pub p: f64,
     /// Lower end of its interval.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// Degrees of freedom of t.
+    #[schema(value_type = Option<f64>)]
     pub df: f64,
 }
 

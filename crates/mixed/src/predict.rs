@@ -40,17 +40,22 @@ pub struct MixedPrediction {
     /// Fixed effects and the effects of the row's groups; `population` for an unknown group.
     pub predicted: f64,
     /// Standard error of `predicted` as a mean, from coefficients and effects.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Degrees of freedom of `se`.
     #[serde(skip)]
     pub df: f64,
     /// Lower end of the interval of that mean.
+    #[schema(value_type = Option<f64>)]
     pub mean_low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub mean_high: f64,
     /// Lower end of the interval of one new measurement.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
 }
 

@@ -179,6 +179,7 @@ pub struct PopulationOutcome {
     pub two_stage: TwoStageOutcome,
     /// The posterior, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub posterior: Option<PopulationPosteriorOutcome>,
     /// Log-likelihood.
     pub log_likelihood: f64,

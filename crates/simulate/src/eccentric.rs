@@ -24,12 +24,15 @@ pub struct BodyOutcome {
     pub shape: &'static str,
     /// Radius of the disc; m.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub radius: Option<f64>,
     /// Distance of its centre of mass from its centre; m.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub offset: Option<f64>,
     /// Semi-axes of the ellipse; m.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub semi_axes: Option<[f64; 2]>,
     /// Attitude at release: direction of the offset from straight down, or tilt
     /// of the first axis from the horizontal; rad.

@@ -15,18 +15,23 @@ pub struct IntervalOutcome {
     pub method: String,
     /// Resampled recordings of a bootstrap.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub replicates: Option<usize>,
     /// How many of them could not be fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub failed: Option<usize>,
     /// Chains of a posterior.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub chains: Option<usize>,
     /// Draws of all chains.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub draws: Option<usize>,
     /// Draws at which the sampler broke down.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub divergences: Option<usize>,
     /// How well the chains of each parameter agree.
     #[serde(default = "nothing", skip_serializing_if = "is_empty")]
@@ -60,6 +65,7 @@ pub struct ProfileOutcome {
     pub rises: Vec<f64>,
     /// "lower", "upper" or "both" where no end was found.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub open: Option<String>,
 }
 

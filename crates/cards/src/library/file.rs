@@ -90,7 +90,7 @@ pub struct LibraryModel {
     /// Coefficient of determination, as printed.
     pub r_squared: f64,
     /// The equation as text, written from its terms.
-    #[serde(skip_deserializing)]
+    #[serde(default)]
     pub formula: String,
     /// Its terms.
     pub terms: Vec<LibraryTerm>,

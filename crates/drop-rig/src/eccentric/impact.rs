@@ -28,11 +28,13 @@ pub struct EccentricImpact {
     /// Angular velocity at onset, anticlockwise; rad/s.
     pub angular_velocity_before: f64,
     /// Angular velocity at separation; rad/s.
+    #[schema(value_type = Option<f64>)]
     pub angular_velocity: f64,
     /// Horizontal velocity of the centre of mass at onset, positive to the
     /// right; m/s.
     pub tangential_velocity_before: f64,
     /// Horizontal velocity of the centre of mass at separation; m/s.
+    #[schema(value_type = Option<f64>)]
     pub tangential_velocity: f64,
     /// Integral of the friction force on the body, positive to the right; N s.
     pub friction_impulse: f64,
@@ -41,8 +43,10 @@ pub struct EccentricImpact {
     /// Kinetic energy of the rotation at onset; J.
     pub rotation_energy_before: f64,
     /// Kinetic energy of the centre of mass at separation; J.
+    #[schema(value_type = Option<f64>)]
     pub translation_energy: f64,
     /// Kinetic energy of the rotation at separation; J.
+    #[schema(value_type = Option<f64>)]
     pub rotation_energy: f64,
     /// Energy that the contact took, ∫ N d′ dt; J.
     pub contact_energy: f64,

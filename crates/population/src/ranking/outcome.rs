@@ -54,9 +54,11 @@ pub struct LawEvidenceOutcome {
     pub aicc: f64,
     /// Lower end of its 95 % interval over impacts like these, taken as independent.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub aicc_low: Option<f64>,
     /// Its upper end.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
     pub aicc_high: Option<f64>,
     /// AICc on each impact, relative to the best law there.
     pub impacts: Vec<ImpactEvidenceOutcome>,

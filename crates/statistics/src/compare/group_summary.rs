@@ -43,26 +43,37 @@ pub struct GroupSummary {
     /// Number of rows whose value is missing.
     pub missing: usize,
     /// Mean; NaN without values, as all below.
+    #[schema(value_type = Option<f64>)]
     pub mean: f64,
     /// Standard deviation (n - 1); NaN for fewer than two values.
+    #[schema(value_type = Option<f64>)]
     pub sd: f64,
     /// Standard deviation over |mean|: the coefficient of variation; a fraction.
+    #[schema(value_type = Option<f64>)]
     pub cv: f64,
     /// Standard error of the mean.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Lower end of the mean's interval, by Student's t.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// Smallest value.
+    #[schema(value_type = Option<f64>)]
     pub min: f64,
     /// First quartile, as [`quantile`](windfall_distribution::quantile::quantile).
+    #[schema(value_type = Option<f64>)]
     pub q1: f64,
     /// Median.
+    #[schema(value_type = Option<f64>)]
     pub median: f64,
     /// Third quartile.
+    #[schema(value_type = Option<f64>)]
     pub q3: f64,
     /// Largest value.
+    #[schema(value_type = Option<f64>)]
     pub max: f64,
 }
 

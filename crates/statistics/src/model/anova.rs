@@ -46,8 +46,10 @@ pub struct AnovaRow {
     /// Its degrees of freedom; zero for an aliased term.
     pub df: f64,
     /// Its mean square over that of the residuals.
+    #[schema(value_type = Option<f64>)]
     pub f: f64,
     /// Probability of F or more without the term.
+    #[schema(value_type = Option<f64>)]
     pub p: f64,
 }
 

@@ -256,8 +256,10 @@ pub struct WholeModel {
     /// Degrees of freedom, without the intercept.
     pub df: f64,
     /// Mean square over that of the residuals.
+    #[schema(value_type = Option<f64>)]
     pub f: f64,
     /// Probability of F or more without the model.
+    #[schema(value_type = Option<f64>)]
     pub p: f64,
 }
 
@@ -279,6 +281,7 @@ impl WholeModel {
 #[schema(as = QualityOutcome)]
 pub struct Quality {
     /// Part of the total sum of squares that is described.
+    #[schema(value_type = Option<f64>)]
     pub r2: f64,
     /// The same per degree of freedom.
     #[schema(value_type = Option<f64>)]
@@ -290,17 +293,23 @@ pub struct Quality {
     #[schema(value_type = Option<f64>)]
     pub press: f64,
     /// Range of predictions over their mean standard error; more than 4 is wanted.
+    #[schema(value_type = Option<f64>)]
     pub adequate_precision: f64,
     /// Residual standard deviation: with weights that of a row of weight 1, with variances by
     /// level the root of their mean over the rows.
+    #[schema(value_type = Option<f64>)]
     pub sigma: f64,
     /// Log-likelihood of normal residuals.
+    #[schema(value_type = Option<f64>)]
     pub log_likelihood: f64,
     /// Akaike's criterion, counting the variance as a parameter.
+    #[schema(value_type = Option<f64>)]
     pub aic: f64,
     /// The same for small samples (Hurvich & Tsai 1989, Biometrika 76, 297-307).
+    #[schema(value_type = Option<f64>)]
     pub aicc: f64,
     /// Schwarz' criterion.
+    #[schema(value_type = Option<f64>)]
     pub bic: f64,
 }
 

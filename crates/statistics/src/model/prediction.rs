@@ -12,14 +12,19 @@ pub struct Prediction {
     #[serde(rename = "predicted")]
     pub mean: f64,
     /// Its standard error.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Interval of the mean.
+    #[schema(value_type = Option<f64>)]
     pub mean_low: f64,
     /// Its upper end.
+    #[schema(value_type = Option<f64>)]
     pub mean_high: f64,
     /// Interval of one further observation.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Its upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
 }
 

@@ -22,6 +22,7 @@ pub struct RowInfluence {
     /// Diagonal of the hat matrix: 1 where the row alone decides.
     pub leverage: f64,
     /// Residual over its standard error.
+    #[schema(value_type = Option<f64>)]
     pub standardised: f64,
     /// The same with the variance of the other rows: Student's t of the row.
     #[schema(value_type = Option<f64>)]
@@ -30,6 +31,7 @@ pub struct RowInfluence {
     #[schema(value_type = Option<f64>)]
     pub cook: f64,
     /// Change of the prediction in its standard errors when the row is left out.
+    #[schema(value_type = Option<f64>)]
     pub dffits: f64,
 }
 

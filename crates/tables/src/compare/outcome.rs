@@ -85,6 +85,7 @@ pub struct PairOutcome {
     /// Upper end.
     pub high: f64,
     /// Hedges' g: the difference in standard deviations.
+    #[schema(value_type = Option<f64>)]
     pub hedges_g: f64,
     /// Pairs behind a paired comparison.
     pub n_pairs: Option<usize>,

@@ -135,5 +135,6 @@ pub struct MixedTest {
     #[serde(flatten)]
     pub test: AnovaRow,
     /// Degrees of freedom of the denominator.
+    #[schema(value_type = Option<f64>)]
     pub df_denominator: f64,
 }

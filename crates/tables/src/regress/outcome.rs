@@ -19,8 +19,10 @@ pub struct StepOutcome {
     /// "removed" or "entered".
     pub action: &'static str,
     /// F of the term.
+    #[schema(value_type = Option<f64>)]
     pub f: f64,
     /// Its probability.
+    #[schema(value_type = Option<f64>)]
     pub p: f64,
     /// The criterion after the step, where one decides.
     pub criterion: Option<f64>,

@@ -57,6 +57,7 @@ pub struct RegressOutcome {
     /// Whether their standard errors are HC3.
     pub robust: bool,
     /// Covariance of the estimates, in the order of `terms`.
+    #[schema(value_type = Vec<Vec<Option<f64>>>)]
     pub covariance: Vec<Vec<f64>>,
     /// In which ranges the columns of the model were.
     pub ranges: Vec<RangeOutcome>,

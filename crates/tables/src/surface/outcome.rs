@@ -15,14 +15,19 @@ pub struct SurfaceTerm {
     /// With the names of the factors.
     pub name: String,
     /// Coefficient in coded units.
+    #[schema(value_type = Option<f64>)]
     pub coded: f64,
     /// Its standard error.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Lower end of its interval.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// Coefficient of the same term when the polynomial is written in actual units.
+    #[schema(value_type = Option<f64>)]
     pub actual: f64,
     /// Sum of squares of the term, in coded units.
     pub ss: Option<f64>,
@@ -128,6 +133,7 @@ pub struct RandomOutcome {
     /// How errors and degrees of freedom are found: "Kenward-Roger".
     pub df_method: &'static str,
     /// Degrees of freedom of the denominator of the test of the model.
+    #[schema(value_type = Option<f64>)]
     pub model_df_denominator: f64,
     /// Standard deviations between the groups and of the residuals.
     pub variances: Vec<VarianceOutcome>,
@@ -161,6 +167,7 @@ pub struct SurfaceModel {
     #[serde(flatten)]
     pub quality: Quality,
     /// Residual standard deviation in percent of the mean.
+    #[schema(value_type = Option<f64>)]
     pub cv_percent: f64,
     /// "I", "II" or "III".
     pub anova_type: &'static str,
@@ -185,6 +192,7 @@ pub struct SettingOutcome {
     /// Responses.
     pub responses: Vec<PredictedResponse>,
     /// Desirability.
+    #[schema(value_type = Option<f64>)]
     pub desirability: f64,
 }
 
@@ -196,8 +204,10 @@ pub struct PredictedResponse {
     /// Its mean there.
     pub predicted: f64,
     /// Interval of one further observation.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Its upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// Desirability of this response alone.
     #[schema(value_type = Option<f64>)]

@@ -37,12 +37,16 @@ pub struct MeanOutcome {
     /// The mean on the scale of the model.
     pub mean: f64,
     /// Its standard error.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Degrees of freedom.
+    #[schema(value_type = Option<f64>)]
     pub df: f64,
     /// Lower end of its interval.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// The same on the scale of the column that the response is a function of.
     pub original: Option<OnScale>,
@@ -72,16 +76,22 @@ pub struct DifferenceOutcome {
     /// Its value.
     pub difference: f64,
     /// Its standard error.
+    #[schema(value_type = Option<f64>)]
     pub se: f64,
     /// Degrees of freedom.
+    #[schema(value_type = Option<f64>)]
     pub df: f64,
     /// Difference over its standard error.
+    #[schema(value_type = Option<f64>)]
     pub t: f64,
     /// Probability, adjusted.
+    #[schema(value_type = Option<f64>)]
     pub p: f64,
     /// Lower end of the interval, adjusted.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// The ratio that it stands for, where the response is a logarithm.
     pub ratio: Option<OnScale>,
@@ -93,11 +103,14 @@ pub struct EqualityOutcome {
     /// Levels of the categories within which means are compared.
     pub within: Vec<String>,
     /// F.
+    #[schema(value_type = Option<f64>)]
     pub f: f64,
     /// Degrees of freedom of the numerator.
     pub df: usize,
     /// Of the denominator.
+    #[schema(value_type = Option<f64>)]
     pub df_denominator: f64,
     /// Probability of F or more.
+    #[schema(value_type = Option<f64>)]
     pub p: f64,
 }

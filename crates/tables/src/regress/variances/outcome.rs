@@ -14,8 +14,10 @@ pub struct VariancesOutcome {
     /// Against one variance for all rows.
     pub test: VariancesTest,
     /// Degrees of freedom of the denominator of F, one for each row of `anova`.
+    #[schema(value_type = Vec<Option<f64>>)]
     pub anova_df: Vec<f64>,
     /// The same of the model against none.
+    #[schema(value_type = Option<f64>)]
     pub model_df: f64,
 }
 
@@ -29,10 +31,13 @@ pub struct LevelVarianceOutcome {
     /// Residual standard deviation.
     pub sd: f64,
     /// Lower end of its interval.
+    #[schema(value_type = Option<f64>)]
     pub low: f64,
     /// Upper end.
+    #[schema(value_type = Option<f64>)]
     pub high: f64,
     /// Degrees of freedom of the variance.
+    #[schema(value_type = Option<f64>)]
     pub df: f64,
 }
 
