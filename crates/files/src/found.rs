@@ -94,6 +94,7 @@ pub struct SpreadOutcome {
     pub cv: Option<f64>,
     /// Median.
     #[serde(default)]
+    #[schema(required)]
     pub median: f64,
     /// Median absolute deviation, scaled to the standard deviation of a normal distribution;
     /// `None` for one impact.

@@ -22,6 +22,7 @@ pub struct ResidualOutcome {
     /// Correlation of the noise of successive samples that the fit reckoned
     /// with; 1.
     #[serde(default)]
+    #[schema(required)]
     pub persistence: f64,
     /// Root mean square residual.
     pub rms: f64,
@@ -31,6 +32,7 @@ pub struct ResidualOutcome {
     /// Mean residual over `rms` in each of eight equal parts of the contact; 1.
     #[serde(default)]
     #[schema(value_type = Vec<f64>)]
+    #[schema(required)]
     pub by_phase: [f64; PHASES],
 }
 
@@ -83,18 +85,22 @@ pub struct ImpactOutcome {
     /// Combinations of parameters, from what the data tell least to what they tell
     /// best: the change of each that changes −2 ln of the likelihood by 1.
     #[serde(default)]
+    #[schema(required)]
     pub directions: Vec<Named<f64>>,
     /// What one standard uncertainty of each quantity of the bench adds to each estimate. It is
     /// part of their deviations, and the same error in all impacts.
     #[serde(default)]
+    #[schema(required)]
     pub common: Named<Named<f64>>,
     /// How the intervals came about.
     #[serde(default)]
+    #[schema(required)]
     pub intervals: IntervalOutcome,
     /// What a reader must know.
     pub findings: Vec<FindingOutcome>,
     /// Why the impact does not count in means, cards and figures; nothing if it does.
     #[serde(default)]
+    #[schema(required)]
     pub left_out: Vec<FindingOutcome>,
 }
 
@@ -121,6 +127,7 @@ pub struct GroupOutcome {
     pub impacts: usize,
     /// Impacts that were fitted and do not count.
     #[serde(default)]
+    #[schema(required)]
     pub left_out: usize,
     /// Specimens among them.
     pub specimens: usize,
@@ -250,13 +257,16 @@ pub struct CampaignOutcome {
     /// Gain and delay of the force over all impacts, by Newton's law: "force_gain",
     /// "force_delay".
     #[serde(default)]
+    #[schema(required)]
     pub bench: Named<PooledOutcome>,
     /// Quantities of the bench that were estimated over all impacts: "inertia".
     #[serde(default)]
+    #[schema(required)]
     pub estimated: Named<BenchOutcome>,
     /// Slopes of parameters over velocity, and of parameters, restitution and the gain of the
     /// force over order and time of day.
     #[serde(default)]
+    #[schema(required)]
     pub trends: Vec<TrendOutcome>,
     /// How the results came about.
     pub status: StatusOutcome,
@@ -270,6 +280,7 @@ pub struct CampaignOutcome {
     pub groups: Vec<GroupOutcome>,
     /// One law for all impacts on a specimen, where that was asked for.
     #[serde(default)]
+    #[schema(required)]
     pub joint: Vec<JointOutcome>,
     /// What a reader of the whole must know.
     pub findings: Vec<FindingOutcome>,

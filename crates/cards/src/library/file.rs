@@ -91,6 +91,7 @@ pub struct LibraryModel {
     pub r_squared: f64,
     /// The equation as text, written from its terms.
     #[serde(default)]
+    #[schema(required)]
     pub formula: String,
     /// Its terms.
     pub terms: Vec<LibraryTerm>,

@@ -29,8 +29,27 @@ pub fn result_schema<T: ToSchema>(name: &str, title: &str) -> ResultSchema {
             None => drop(definitions.insert(part, schema)),
         }
     }
+    name_values(&mut definitions);
     let schema = with_head(described(json!(T::schema())), name, title, definitions);
     ResultSchema { schema, clashes }
+}
+
+/// Gives what stands under names in an object its own definition.
+fn name_values(definitions: &mut Map<String, Value>) {
+    let mut values = Vec::new();
+    for (name, schema) in definitions.iter_mut() {
+        let value = schema.get_mut("additionalProperties");
+        let (Some(of), Some(value)) = (name.strip_prefix("Named_"), value) else {
+            continue;
+        };
+        if value.get("properties").is_some() {
+            values.push((of.to_owned(), value.take()));
+            *value = json!({ "$ref": format!("#/$defs/{of}") });
+        }
+    }
+    for (name, value) in values {
+        definitions.entry(name).or_insert(value);
+    }
 }
 
 impl ResultSchema {
@@ -101,14 +120,21 @@ fn described(mut schema: Value) -> Value {
     schema
 }
 
-fn tidy(value: &mut Value) {
-    match value {
-        Value::Object(schema) => {
-            tidy_object(schema);
-            schema.values_mut().for_each(tidy);
+fn tidy(schema: &mut Value) {
+    let Value::Object(schema) = schema else {
+        return;
+    };
+    tidy_object(schema);
+    for (key, part) in schema {
+        match (key.as_str(), part) {
+            // Names of keys are not words of a schema.
+            ("properties", Value::Object(keys)) => keys.values_mut().for_each(tidy),
+            ("anyOf" | "allOf" | "prefixItems", Value::Array(parts)) => {
+                parts.iter_mut().for_each(tidy);
+            }
+            ("items" | "additionalProperties", part) => tidy(part),
+            _ => {}
         }
-        Value::Array(items) => items.iter_mut().for_each(tidy),
-        _ => {}
     }
 }
 
@@ -117,9 +143,7 @@ fn tidy_object(schema: &mut Map<String, Value>) {
         *target = target.replace("#/components/schemas/", "#/$defs/");
     }
     // Widths of numbers, which JSON does not have.
-    if schema.get("format").is_some_and(Value::is_string) && schema.contains_key("type") {
-        schema.remove("format");
-    }
+    schema.remove("format");
     if schema.get("propertyNames") == Some(&json!({ "type": "string" })) {
         schema.remove("propertyNames");
     }
@@ -127,11 +151,45 @@ fn tidy_object(schema: &mut Map<String, Value>) {
         schema.remove("additionalProperties");
     }
     // With further keys, a value may be of several types.
-    if let Some(any @ Value::Array(_)) = schema.remove("oneOf") {
-        schema.insert("anyOf".to_owned(), any);
+    if let Some(Value::Array(mut any)) = schema.remove("oneOf") {
+        describe_whole(schema, &mut any);
+        schema.insert("anyOf".to_owned(), any.into());
     }
-    if schema.get("properties").is_some_and(Value::is_object) && schema.contains_key("type") {
-        require(schema);
+    if let Some(Value::String(description)) = schema.get_mut("description") {
+        *description = words_of_json(description);
+    }
+    require(schema);
+}
+
+/// A comment of Rust in the words of JSON: what is missing is null there, and nothing is linked.
+fn words_of_json(comment: &str) -> String {
+    let mut text = String::new();
+    let mut rest = comment;
+    while let Some((before, (name, after))) = rest
+        .split_once("[`")
+        .and_then(|(before, link)| Some((before, link.split_once("`]")?)))
+    {
+        text += &format!("{before}`{name}`");
+        rest = match after.strip_prefix('(').and_then(|own| own.split_once(')')) {
+            Some((_, after)) => after,
+            None => after,
+        };
+    }
+    text += rest;
+    let of_rust = ["`None`", "NaN", "not a number"];
+    of_rust
+        .iter()
+        .fold(text, |text, word| text.replace(word, "null"))
+}
+
+/// What is said of a value or null belongs to both.
+fn describe_whole(schema: &mut Map<String, Value>, any: &mut [Value]) {
+    let null = json!({ "type": "null" });
+    let mut values = any.iter_mut().filter(|own| **own != null);
+    if let (Some(Value::Object(value)), None) = (values.next(), values.next())
+        && let Some(description) = value.remove("description")
+    {
+        schema.insert("description".to_owned(), description);
     }
 }
 
@@ -172,7 +230,7 @@ mod tests {
     struct Part {
         /// Its value; m.
         value: f64,
-        /// Its scatter, where it is known; m.
+        /// Its scatter, as of [`Whole`](Self); `None` where it is not known; m.
         sd: Option<f64>,
         /// Left out where there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -200,17 +258,24 @@ mod tests {
         let schema: Value = serde_json::from_str(&schema.text().unwrap()).unwrap();
         assert_eq!(
             schema["required"],
-            json!(["windfall", "schema", "values", "best"])
+            json!(["windfall", "schema", "best", "values"])
         );
         assert_eq!(schema["properties"]["schema"]["const"], "whole/1");
         let part = &schema["$defs"]["Part"];
-        assert_eq!(part["required"], json!(["value", "sd"]));
+        assert_eq!(part["required"], json!(["sd", "value"]));
         assert_eq!(part["properties"]["sd"]["type"], json!(["number", "null"]));
-        assert_eq!(part["properties"]["unit"]["type"], "string");
-        let best = &schema["properties"]["best"]["anyOf"];
         assert_eq!(
-            *best,
-            json!([{ "type": "null" }, { "$ref": "#/$defs/Part" }])
+            part["properties"]["sd"]["description"],
+            "Its scatter, as of `Whole`; null where it is not known; m."
         );
+        assert_eq!(part["properties"]["unit"]["type"], "string");
+        let best = &schema["properties"]["best"];
+        assert_eq!(best["description"], "The best of them.");
+        assert_eq!(
+            best["anyOf"],
+            json!([{ "$ref": "#/$defs/Part" }, { "type": "null" }])
+        );
+        let values = &schema["$defs"]["Named_Part"]["additionalProperties"];
+        assert_eq!(*values, json!({ "$ref": "#/$defs/Part" }));
     }
 }

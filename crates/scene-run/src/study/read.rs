@@ -32,7 +32,9 @@ pub struct StudyPlan {
 /// What is varied.
 #[derive(Clone, Debug, Serialize, utoipa::ToSchema)]
 pub struct Factor {
+    /// What it is called.
     pub name: String,
+    /// Names of its levels.
     pub levels: Vec<String>,
 }
 
