@@ -221,3 +221,49 @@ outcomes! {
     "summary/1": SummaryOutcome = "summary",
     "surface/1": SurfaceOutcome = "surface",
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+
+    /// Targets of all references below a value.
+    fn references(value: &Value) -> Vec<&str> {
+        match value {
+            Value::Object(own) => own
+                .iter()
+                .flat_map(|(key, part)| match part {
+                    Value::String(target) if key == "$ref" => vec![&target[..]],
+                    _ => references(part),
+                })
+                .collect(),
+            Value::Array(own) => own.iter().flat_map(references).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    #[test]
+    fn schemas_say_what_they_refer_to() {
+        let mut total = 0;
+        for kind in RESULTS {
+            let schema = (kind.described)();
+            assert_eq!(schema.clashes(), &[] as &[String], "{}", kind.schema);
+            let schema: Value = serde_json::from_str(&schema.text().unwrap()).unwrap();
+            for target in references(&schema) {
+                let place = target.strip_prefix('#').unwrap();
+                assert!(schema.pointer(place).is_some(), "{}: {target}", kind.schema);
+                total += 1;
+            }
+        }
+        assert!(total > 100, "{total} references");
+    }
+
+    #[test]
+    fn results_have_names_of_their_own() {
+        let mut names: Vec<&str> = RESULTS.iter().map(ResultKind::name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), RESULTS.len());
+    }
+}
