@@ -3,7 +3,7 @@
 use crate::api::events::CampaignChanged;
 use crate::problem::Problem;
 use axum::Json;
-use utoipa::openapi::schema::{AdditionalProperties, Object, Schema};
+use utoipa::openapi::schema::{AdditionalProperties, Object, Schema, SchemaType, Type};
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
 use utoipa::openapi::{OpenApi as Description, Ref, RefOr};
 use utoipa::{Modify, OpenApi};
@@ -102,52 +102,47 @@ impl Modify for NamedValues {
     }
 }
 
-/// Keys that answers omit when empty.
-const LEFT_OUT: [(&str, &[&str]); 5] = [
-    (
-        "IntervalOutcome",
-        &[
-            "replicates",
-            "failed",
-            "chains",
-            "draws",
-            "divergences",
-            "mixing",
-            "drawn",
-            "profiles",
-        ],
-    ),
-    ("ProfileOutcome", &["open"]),
-    ("LawEvidenceOutcome", &["aicc_low", "aicc_high"]),
-    ("PopulationOutcome", &["posterior"]),
-    ("MeasuredOutcome", &["parts"]),
-];
-
-/// Marks all other keys of answers as required; missing values are `null`.
+/// Marks keys of answers that may be null as required: the key of a missing value is written.
+/// What is left out where it is empty is neither null nor required.
 struct KeysOfAnswers;
 
 impl Modify for KeysOfAnswers {
     fn modify(&self, description: &mut Description) {
         let components = description.components.iter_mut();
-        for (name, schema) in components.flat_map(|all| &mut all.schemas) {
-            let left_out = LEFT_OUT.iter().find(|(own, _)| own == name);
-            let left_out = left_out.map_or(&[][..], |(_, keys)| *keys);
-            require(schema, left_out);
+        for schema in components.flat_map(|all| all.schemas.values_mut()) {
+            require(schema);
         }
     }
 }
 
-fn require(schema: &mut RefOr<Schema>, left_out: &[&str]) {
+fn require(schema: &mut RefOr<Schema>) {
     let RefOr::T(schema) = schema else { return };
     match schema {
         Schema::Object(object) if !is_request(object) => {
-            let keys = object.properties.keys();
-            let always = keys.filter(|key| !left_out.contains(&key.as_str()));
-            object.required = always.cloned().collect();
+            let keys = object.properties.iter();
+            let always =
+                keys.filter(|(key, own)| object.required.contains(key) || is_nullable(own));
+            object.required = always.map(|(key, _)| key.clone()).collect();
         }
-        Schema::AllOf(all) => all.items.iter_mut().for_each(|own| require(own, left_out)),
-        Schema::OneOf(one) => one.items.iter_mut().for_each(|own| require(own, left_out)),
+        Schema::AllOf(all) => all.items.iter_mut().for_each(require),
+        Schema::OneOf(one) => one.items.iter_mut().for_each(require),
         _ => {}
+    }
+}
+
+fn is_nullable(schema: &RefOr<Schema>) -> bool {
+    match schema {
+        RefOr::T(Schema::Object(own)) => match &own.schema_type {
+            SchemaType::Type(own) => *own == Type::Null,
+            SchemaType::Array(any) => any.contains(&Type::Null),
+            SchemaType::AnyValue => true,
+        },
+        RefOr::T(Schema::Array(own)) => match &own.schema_type {
+            SchemaType::Array(any) => any.contains(&Type::Null),
+            _ => false,
+        },
+        RefOr::T(Schema::OneOf(one)) => one.items.iter().any(is_nullable),
+        _ => false,
     }
 }
 

@@ -3299,18 +3299,20 @@ def explain(
 
 
 def schema(
-    kind: Literal["pendulum", "carriage", "compression", "relaxation", "acoustic", "repeats", "drop", "scene", "scene-study"],
+    kind: Literal["pendulum", "carriage", "compression", "relaxation", "acoustic", "repeats", "drop", "scene", "scene-study", "add", "bounces", "bruise", "calibrate", "card", "card-laws", "card-library", "card-transfer", "compare", "compare-agreement", "design", "explain", "fit", "fit-shard", "inspect", "inspect-presets", "laws", "licences", "written", "new-from", "plan", "plan-achieved", "population", "radius", "regress", "report", "scene-contacts", "scene-deck", "scene-picture", "scene-run", "scene-study/1", "scene-table", "scene-vtk", "simulate-drop", "simulate-eccentric-drop", "simulate-impact", "simulate-motion", "simulate-recordings", "summary", "surface"],
     *,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
-    """Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete.
+    """Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete, or of the
+    JSON of a command.
 
     The command `windfall schema`.
 
-    * `kind`: Kind of rig, a scene, or a study of scenes
+    * `kind`: Kind of rig, a scene, or a study of scenes: what its file may say; or a result: the
+      keys of its JSON, by the name that stands there as "schema", with the number or without
     * `out`: Write it into this file
     """
     return call(
