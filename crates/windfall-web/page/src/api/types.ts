@@ -5,7 +5,9 @@ export interface About {
 }
 export interface ActualTerm { name: string; coefficient: number; }
 export interface AlongOutcome { quantity: string; known: MeasuredValue; value: number; }
-export interface AnovaOutcome { term: string; ss: number | null; df: number; f: number; p: number; }
+export interface AnovaOutcome {
+  term: string; ss: number | null; df: number; f: number | null; p: number | null;
+}
 export type AnyOutcome = CampaignOutcome | MeasuredOutcome;
 export type AnyRegressOutcome = RegressOutcome | MixedOutcome;
 export interface BenchOutcome {
@@ -99,8 +101,8 @@ export interface DesignWayOutcome {
   depth: DepthOutcome | null;
 }
 export interface DifferenceOutcome {
-  within: string[]; contrast: string; difference: number; se: number; df: number; t: number; p: number; low: number;
-  high: number; ratio: OnScale | null;
+  within: string[]; contrast: string; difference: number; se: number | null; df: number | null; t: number | null;
+  p: number | null; low: number | null; high: number | null; ratio: OnScale | null;
 }
 export interface DirectionOutcome { parts: Record<string, number>; sd: number | null; words: string; }
 export interface DropOutcome {
@@ -111,7 +113,9 @@ export interface EnergyOutcome {
   kinetic: number; rotational: number; potential: number; in_contacts: number; in_friction: number;
   lost_in_contacts: number; lost_by_friction: number; lost_by_drag: number; done_by_walls: number;
 }
-export interface EqualityOutcome { within: string[]; f: number; df: number; df_denominator: number; p: number; }
+export interface EqualityOutcome {
+  within: string[]; f: number | null; df: number; df_denominator: number | null; p: number | null;
+}
 export interface EstimateOutcome {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string; held: boolean;
 }
@@ -120,7 +124,7 @@ export interface FactorOutcome {
   letter: string; name: string; centre: number; half_range: number; lowest: number; highest: number;
 }
 export interface FailureOutcome {
-  id: string; specimen: string; file: string; law: string | null; message: string; findings: FindingOutcome[];
+  id: string; specimen: string; file: string; law: string | null; message: string; findings?: FindingOutcome[];
 }
 export interface FamilyLine { dimension: number; words: string; members: FamilyMember[]; }
 export interface FamilyMember { parameters: number[]; law: string; heights: HeightFeatures[]; }
@@ -186,9 +190,8 @@ export interface Inspection {
   assumed: string[]; findings: FindingOutcome[];
 }
 export interface IntervalOutcome {
-  method: string; replicates?: number | null; failed?: number | null; chains?: number | null; draws?: number | null;
-  divergences?: number | null; mixing?: Record<string, MixingOutcome>; drawn?: Record<string, number[]>;
-  profiles?: Record<string, ProfileOutcome>;
+  method: string; replicates?: number; failed?: number; chains?: number; draws?: number; divergences?: number;
+  mixing?: Record<string, MixingOutcome>; drawn?: Record<string, number[]>; profiles?: Record<string, ProfileOutcome>;
 }
 export interface JobGiven {
   work: Work; laws?: string[]; covariates?: string[]; intervals?: string | null;
@@ -206,9 +209,9 @@ export interface JointOutcome {
 export interface LackOfFitOutcome { lack: AnovaOutcome; pure_error: SumOfSquares; }
 export interface LawAbout { name: string; formula: string; parameters: ParameterAbout[]; notes: string; }
 export interface LawEvidenceOutcome {
-  law: string; failed: number; parameters_per_impact: number; cost: number; aicc: number; aicc_low?: number | null;
-  aicc_high?: number | null; impacts: ImpactEvidenceOutcome[]; bic: number; first_share: number;
-  prediction: number | null; prediction_sd: number | null; residual_ratio: number; runs_z: number;
+  law: string; failed: number; parameters_per_impact: number; cost: number; aicc: number; aicc_low?: number;
+  aicc_high?: number; impacts: ImpactEvidenceOutcome[]; bic: number; first_share: number; prediction: number | null;
+  prediction_sd: number | null; residual_ratio: number; runs_z: number;
 }
 export interface LawsOutcome {
   windfall: string; campaign: string; simulated: string | null; impacts: number; levels: number; verdict: string;
@@ -216,7 +219,7 @@ export interface LawsOutcome {
   findings: FindingOutcome[];
 }
 export interface LevelVarianceOutcome {
-  level: string; rows: number; sd: number; low: number; high: number; df: number;
+  level: string; rows: number; sd: number; low: number | null; high: number | null; df: number | null;
 }
 export interface LimitOutcome { limit: number; share: number; interval: number[]; }
 export interface LiveLaw {
@@ -229,7 +232,8 @@ export interface LiveOutcome {
 }
 export interface MassOutcome { value: number; sd: number; impacts: number; }
 export interface MeanOutcome {
-  levels: string[]; mean: number; se: number; df: number; low: number; high: number; original: OnScale | null;
+  levels: string[]; mean: number; se: number | null; df: number | null; low: number | null; high: number | null;
+  original: OnScale | null;
 }
 export interface MeansOutcome {
   slope_on: string | null; of: string[]; within: string[]; at: [string, number][]; means: MeanOutcome[];
@@ -261,10 +265,11 @@ export type MixedOutcome = RowCount & ({
   means: MeansOutcome[]; findings: FindingOutcome[];
 });
 export interface MixedPrediction {
-  population: number; predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
+  population: number; predicted: number; se: number | null; mean_low: number | null; mean_high: number | null;
+  low: number | null; high: number | null;
 }
 export type MixedPredictionOutcome = MixedPrediction & ({ line: number; original: OriginalPrediction | null; });
-export type MixedTest = AnovaOutcome & { df_denominator: number; };
+export type MixedTest = AnovaOutcome & ({ df_denominator: number | null; });
 export interface MixingOutcome { r_hat: number | null; bulk_draws: number; tail_draws: number; }
 export interface ModelRange { column: string; low: number; high: number; }
 export interface ModelResiduals {
@@ -306,7 +311,7 @@ export interface PopulationEffect {
 export interface PopulationOutcome {
   windfall: string; campaign: string; simulated: string | null; law: string; method: string; fruits: number;
   impacts: number; parameters: PopulationParameter[]; correlations: PopulationCorrelation[];
-  effects: PopulationEffect[]; two_stage: TwoStageOutcome; posterior?: PopulationPosteriorOutcome | null;
+  effects: PopulationEffect[]; two_stage: TwoStageOutcome; posterior?: PopulationPosteriorOutcome;
   log_likelihood: number; shift_from_fits: number; shift_from_first_order: number; converged: boolean;
   fruit: FruitOutcome[]; population: Population; failed: FailureOutcome[]; findings: FindingOutcome[];
 }
@@ -319,10 +324,11 @@ export interface PopulationPosteriorOutcome {
   largest_r_hat: number; fewest_draws: number; divergences: number;
 }
 export interface PredictedResponse {
-  response: string; predicted: number; low: number; high: number; desirability: number | null;
+  response: string; predicted: number; low: number | null; high: number | null; desirability: number | null;
 }
 export interface Prediction {
-  predicted: number; se: number; mean_low: number; mean_high: number; low: number; high: number;
+  predicted: number; se: number | null; mean_low: number | null; mean_high: number | null; low: number | null;
+  high: number | null;
 }
 export type PredictionOutcome = Prediction & ({ line: number; original: OriginalPrediction | null; });
 export interface ProbeImpactOutcome {
@@ -334,13 +340,14 @@ export interface ProbeOutcome {
   peak_acceleration: number[] | null; velocity_change: number[] | null; hardest: ProbeImpactOutcome | null;
 }
 export interface Problem { title: string; status: number; detail: string; code: string; }
-export interface ProfileOutcome { values: number[]; rises: number[]; open?: string | null; }
+export interface ProfileOutcome { values: number[]; rises: number[]; open?: string; }
 export interface QualityOutcome {
-  r2: number; r2_adjusted: number | null; r2_predicted: number | null; press: number | null; adequate_precision: number;
-  sigma: number; log_likelihood: number; aic: number; aicc: number; bic: number;
+  r2: number | null; r2_adjusted: number | null; r2_predicted: number | null; press: number | null;
+  adequate_precision: number | null; sigma: number | null; log_likelihood: number | null; aic: number | null;
+  aicc: number | null; bic: number | null;
 }
 export interface RandomOutcome {
-  groups: [string, number][]; method: string; df_method: string; model_df_denominator: number;
+  groups: [string, number][]; method: string; df_method: string; model_df_denominator: number | null;
   variances: VarianceOutcome[]; r2_conditional: number; intraclass: number[];
 }
 export interface RangeOutcome { value: number; low: number | null; high: number | null; }
@@ -356,7 +363,7 @@ export interface RegressGiven {
 }
 export type RegressOutcome = RowCount & QualityOutcome & ({
   formula: string; response: string; weights: string | null; level_variances: VariancesOutcome | null;
-  terms: TermOutcome[]; robust: boolean; covariance: number[][]; ranges: ModelRange[]; model: WholeModel;
+  terms: TermOutcome[]; robust: boolean; covariance: ((number | null)[])[]; ranges: ModelRange[]; model: WholeModel;
   residual: SumOfSquares; total: SumOfSquares; anova_type: string; anova: AnovaOutcome[];
   lack_of_fit: LackOfFitOutcome | null; vif: InflationOutcome[]; removed: StepOutcome[]; steps: StepOutcome[];
   cross_validation: CrossValidationOutcome | null; fold_by: string | null; residuals: ModelResiduals;
@@ -373,8 +380,8 @@ export interface ResponseMap { response: string; map: ContourMap; errors: number
 export interface RidgeOutcome { of: string; radius: number; actual: number[]; value: number; }
 export interface RowCount { rows: number; left_out: number; left_out_by: GroupLoss[]; }
 export interface RowInfluence {
-  observed: number; fitted: number; residual: number; leverage: number; standardised: number;
-  studentised: number | null; cook: number | null; dffits: number;
+  observed: number; fitted: number; residual: number; leverage: number; standardised: number | null;
+  studentised: number | null; cook: number | null; dffits: number | null;
 }
 export type RowOutcome = RowInfluence & { line: number; };
 export interface RunView { time: string; results: number; failures: number; }
@@ -401,7 +408,7 @@ export interface SensorOutcome {
   probe: ProbeOutcome | null;
 }
 export interface SettingOutcome {
-  actual: number[]; coded: number[]; responses: PredictedResponse[]; desirability: number;
+  actual: number[]; coded: number[]; responses: PredictedResponse[]; desirability: number | null;
 }
 export interface ShownMotion { time: number[]; displacement: number[]; rate: number[]; force: number[]; }
 export interface ShownSamples { time: number[]; value: number[]; }
@@ -416,7 +423,7 @@ export interface SpreadOutcome {
 export interface StartOutcome { law: string; rule: string; hertz_stiffness: number | null; }
 export interface StatusOutcome { fitted: number; stored: number; failed: number; up_to_date: boolean; }
 export interface StepOutcome {
-  term: string; action: string; f: number; p: number; criterion: number | null; r2: number;
+  term: string; action: string; f: number | null; p: number | null; criterion: number | null; r2: number;
 }
 export interface StoredResults { outcome: AnyOutcome | null; pending: number; time: string | null; }
 export interface SumOfSquares { ss: number | null; df: number | null; }
@@ -427,24 +434,26 @@ export interface SurfaceGiven {
 }
 export type SurfaceModel = QualityOutcome & ({
   response: string; terms: SurfaceTerm[]; actual_terms: ActualTerm[]; blocks: BlockOutcome | null;
-  random: RandomOutcome | null; model: WholeModel; residual: SumOfSquares; total: SumOfSquares; cv_percent: number;
-  anova_type: string; lack_of_fit: LackOfFitOutcome | null; canonical: CanonicalOutcome | null; ridge: RidgeOutcome[];
-  influence: RowOutcome[];
+  random: RandomOutcome | null; model: WholeModel; residual: SumOfSquares; total: SumOfSquares;
+  cv_percent: number | null; anova_type: string; lack_of_fit: LackOfFitOutcome | null;
+  canonical: CanonicalOutcome | null; ridge: RidgeOutcome[]; influence: RowOutcome[];
 });
 export type SurfaceOutcome = SurfaceModel & ({
   factors: FactorOutcome[]; coding: string; responses: SurfaceModel[]; optimum: SettingOutcome | null;
   family: FamilyOutcome | null; findings: FindingOutcome[]; grid: GridOutcome | null;
 });
 export interface SurfaceTerm {
-  term: string; name: string; coded: number; se: number; low: number; high: number; actual: number; ss: number | null;
-  df: number | null; df_denominator: number | null; f: number | null; p: number | null; vif: number | null;
+  term: string; name: string; coded: number | null; se: number | null; low: number | null; high: number | null;
+  actual: number | null; ss: number | null; df: number | null; df_denominator: number | null; f: number | null;
+  p: number | null; vif: number | null;
 }
 export interface TableView { columns: string[]; rows: string[][]; }
 export interface TargetOutcome {
   of: string; drops: number; mass: number; height: number; features: Record<string, MeasuredValue>;
 }
 export interface TermOutcome {
-  term: string; estimate: number; se: number; t: number; p: number; low: number; high: number; df: number;
+  term: string; estimate: number; se: number | null; t: number | null; p: number | null; low: number | null;
+  high: number | null; df: number | null;
 }
 export interface TestOutcome { test: string; statistic: number; p: number; }
 export interface TextGiven { text: string; }
@@ -460,7 +469,8 @@ export interface VarianceOutcome {
   group: string; kind: string; of: string; value: number; low: number | null; high: number | null;
 }
 export interface VariancesOutcome {
-  by: string; method: string; levels: LevelVarianceOutcome[]; test: VariancesTest; anova_df: number[]; model_df: number;
+  by: string; method: string; levels: LevelVarianceOutcome[]; test: VariancesTest; anova_df: (number | null)[];
+  model_df: number | null;
 }
 export interface VariancesTest { statistic: number; df: number; p: number; }
 export interface VerifiedResponse {
@@ -483,7 +493,7 @@ export interface WaveformParameter {
   name: string; value: MeasuredValue; sd_of_noise: number; per_millimetre: MeasuredValue | null;
 }
 export interface WeakOutcome { sd: number; shares: Record<string, number>; }
-export interface WholeModel { ss: number | null; df: number; f: number; p: number; }
+export interface WholeModel { ss: number | null; df: number; f: number | null; p: number | null; }
 export interface WindowGiven { impact: string; from?: number | null; to?: number | null; }
 export type Work = "fit" | "laws" | "population" | "calibrate" | "report";
 export interface WrittenValue {
