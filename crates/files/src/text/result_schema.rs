@@ -176,6 +176,9 @@ fn words_of_json(comment: &str) -> String {
         };
     }
     text += rest;
+    // Lines are broken for the width of the source.
+    let paragraphs = text.split("\n\n").map(|own| own.replace('\n', " "));
+    let text = paragraphs.collect::<Vec<_>>().join("\n\n");
     let of_rust = ["`None`", "NaN", "not a number"];
     of_rust
         .iter()

@@ -8,6 +8,7 @@ use crate::args::design::DesignArguments;
 use crate::args::fit::FitArguments;
 use crate::args::format::{Format, Shown};
 use crate::args::geometry::{RadiusArguments, TransferArguments};
+use crate::args::kind::NewKind;
 use crate::args::laws::LawsArguments;
 use crate::args::plan::PlanArguments;
 use crate::args::population::PopulationArguments;
@@ -19,7 +20,7 @@ use crate::args::serve::ServeArguments;
 use crate::args::simulate::SimulateArguments;
 use crate::args::surface::SurfaceArguments;
 use crate::saying::Saying;
-use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap::{Args, Parser, Subcommand, ValueHint};
 use std::path::PathBuf;
 use windfall_campaign::settings::open_options::OpenRequest;
 
@@ -190,29 +191,6 @@ pub struct AddArguments {
     /// How the result is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-}
-
-/// Rigs that have a template.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum NewKind {
-    /// Arm with encoder and force sensor that strikes a fruit on an anvil
-    Pendulum,
-    /// Body on a line: a cart on an incline, a drop hammer
-    Carriage,
-    /// Slow compression in a testing machine or a gripper
-    Compression,
-    /// Compression to a deformation that is held: stress relaxation
-    Relaxation,
-    /// Taps recorded by a microphone: acoustic firmness
-    Acoustic,
-    /// Drops repeated on one spot, for the critical impact energy
-    Repeats,
-    /// Fruit fall on a plate over a load cell and bounce
-    Drop,
-    /// Not a campaign but a scene: many fruit and a machine, simulated
-    Scene,
-    /// Variants of a scene, compared: pads and drop heights
-    SceneStudy,
 }
 
 /// `windfall explain`

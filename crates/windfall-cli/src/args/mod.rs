@@ -10,6 +10,7 @@ pub mod fit;
 pub(crate) mod format;
 pub mod geometry;
 pub mod groups;
+pub(crate) mod kind;
 pub mod laws;
 pub mod plan;
 pub mod population;

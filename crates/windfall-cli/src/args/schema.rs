@@ -1,6 +1,6 @@
 //! Arguments of `windfall schema`.
 
-use crate::args::common::NewKind;
+use crate::args::kind::NewKind;
 use crate::outcome::{RESULTS, ResultKind};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum, ValueHint};

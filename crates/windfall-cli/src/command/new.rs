@@ -1,6 +1,7 @@
 //! `windfall new`
 
-use crate::args::common::{NewArguments, NewKind};
+use crate::args::common::NewArguments;
+use crate::args::kind::NewKind;
 use crate::outcome::WrittenFiles;
 use crate::show::{csv_of_names, show};
 use windfall_campaign::settings::template::{

@@ -1,6 +1,6 @@
 //! `windfall schema`
 
-use crate::args::common::NewKind;
+use crate::args::kind::NewKind;
 use crate::args::schema::{Described, SchemaArguments};
 use crate::show::{tell_written, write_result};
 use windfall_campaign::settings::schema::impacts_schema;
