@@ -492,7 +492,7 @@ fn recovers_a_fixed_threshold_of_one_newton() {
 /// noise of 1 N: of each sample `persistence` times that of the one before, and a new part.
 fn noisy_pulse(peak: f64, persistence: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
     let mut source = noise_source(seed, 0);
-    let mut noise = normal(&mut source);
+    let mut noise = 0.0;
     let times: Vec<f64> = (0..6000).map(|i| f64::from(i) * 5e-6).collect();
     let force = times.iter().map(|t| {
         let phase = (t - 0.010) / 0.006;
@@ -538,7 +538,7 @@ fn recovers_weak_contacts_in_white_noise() {
             let window = contacts.windows[0];
             let onset = (window.onset - 0.010) / 0.006;
             let end = (0.016 - window.end) / 0.006;
-            assert!(onset > -0.03 && onset < late, "{ratio} {seed} {onset}");
+            assert!(onset > -0.02 && onset < late, "{ratio} {seed} {onset}");
             assert!(end > -0.04 && end < late, "{ratio} {seed} {end}");
             let (zero, noise) = (contacts.offset - 0.4, contacts.deviation - 1.0);
             assert!(zero.abs() < 0.15 && noise.abs() < 0.1, "{zero} {noise}");

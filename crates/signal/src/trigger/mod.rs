@@ -36,6 +36,9 @@ const WANDERING_SHARE: f64 = 0.5;
 /// pieces; 1.
 const FIXED_CLEAR: f64 = 3.0;
 
+/// Averages that are noisier than those of white noise by this factor show noise that persists; 1.
+const PERSISTS: f64 = 1.5;
+
 /// The noise of an averaged signal is measured in this many independent averages, at least.
 const LEAST_AVERAGES: usize = 40;
 
@@ -312,7 +315,10 @@ pub fn find_contacts(signal: &Signal, options: &TriggerOptions) -> Result<Contac
         let raised_sums = RunningSums::of(&raised);
         let wanted = match options.threshold {
             Threshold::Fixed(force) => force / FIXED_CLEAR,
-            Threshold::Automatic { deviations, .. } => THRESHOLD_AIM * height.abs() / deviations,
+            Threshold::Automatic { deviations, .. } => {
+                let white = sample_noise / (smoothing as f64).sqrt();
+                (THRESHOLD_AIM * height.abs() / deviations).max(PERSISTS * white)
+            }
         };
         contacts.smoothing = quieter(&raised_sums, smoothing, wanted, noise);
         let smoothing = contacts.smoothing;
@@ -422,16 +428,20 @@ fn check(signal: &Signal, options: &TriggerOptions) -> Result<(), Error> {
 /// Noise of a mean over `length` samples: that of white noise, or what is seen before contact
 /// if that is more (noise that persists averages out less).
 ///
-/// It is seen in means over `length`, or over as many samples as leave [`LEAST_AVERAGES`]
-/// independent ones; longer means are quieter by the root of their length.
+/// It is seen in means over `length`. Where fewer than [`LEAST_AVERAGES`] of them lie before
+/// contact, shorter ones tell whether it persists: longer means are quieter by the root of their
+/// length.
 ///
 /// * `noise`: standard deviation of a sample
 fn averaged_noise(sums: &RunningSums, quiet: &Range<usize>, noise: f64, length: usize) -> f64 {
-    let seen = (quiet.len() / LEAST_AVERAGES).min(length).max(1);
-    let means = sums.means_in(quiet.clone(), seen | 1);
-    let longer = ((seen | 1) as f64 / length as f64).sqrt();
     let white = noise / (length as f64).sqrt();
-    usual_deviation(&means, baseline(&means)).map_or(white, |own| white.max(own * longer))
+    let enough = (quiet.len() / LEAST_AVERAGES).min(length);
+    let seen = enough.saturating_sub(1) | 1;
+    let means = sums.means_in(quiet.clone(), seen);
+    let own = usual_deviation(&means, baseline(&means)).unwrap_or(0.0);
+    let own = own * (seen as f64 / length as f64).sqrt();
+    let counts = seen == length || own > PERSISTS * white;
+    if counts { own.max(white) } else { white }
 }
 
 /// Level of the signal outside contact, and whether it comes from the end: that
