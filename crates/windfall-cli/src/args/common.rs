@@ -120,8 +120,8 @@ pub enum Command {
     Card(CardArguments),
     /// Explain findings: what they mean and what to do
     Explain(ExplainArguments),
-    /// Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete, or of
-    /// the JSON of a command
+    /// Write the JSON Schema of a campaign.toml or scene.toml, for editors, or of the JSON that a
+    /// command answers
     Schema(SchemaArguments),
     /// Write shell completions to standard output
     Completions {

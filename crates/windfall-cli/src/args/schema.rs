@@ -14,8 +14,8 @@ use std::path::PathBuf;
   windfall schema regress
       keys of `windfall regress --format json`, whose \"schema\" is \"regress/1\"")]
 pub struct SchemaArguments {
-    /// Kind of rig, a scene, or a study of scenes: what its file may say; or a result: the keys of
-    /// its JSON, by the name that stands there as "schema", with the number or without
+    /// What to describe: a file, by the kind of rig, as a scene or as a study of scenes; or the
+    /// JSON of a command, by the name in its key "schema", with or without the number
     #[arg(value_parser = described())]
     pub kind: Described,
     /// Write it into this file

@@ -3306,13 +3306,13 @@ def schema(
     also_read: Path | Sequence[Path] = (),
     progress: bool = False,
 ) -> Result:
-    """Write the JSON Schema of a campaign.toml or scene.toml, from which editors complete, or of the
-    JSON of a command.
+    """Write the JSON Schema of a campaign.toml or scene.toml, for editors, or of the JSON that a
+    command answers.
 
     The command `windfall schema`.
 
-    * `kind`: Kind of rig, a scene, or a study of scenes: what its file may say; or a result: the
-      keys of its JSON, by the name that stands there as "schema", with the number or without
+    * `kind`: What to describe: a file, by the kind of rig, as a scene or as a study of scenes; or
+      the JSON of a command, by the name in its key "schema", with or without the number
     * `out`: Write it into this file
     """
     return call(
