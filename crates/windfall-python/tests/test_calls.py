@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
 import time
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -106,17 +108,27 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c_stops_the_work_and_leaves_nothing_half_written(campaign: Path) -> None:
-    before = sorted(campaign.rglob("*"))
+    before = {path: path.read_bytes() for path in campaign.rglob("*") if path.is_file()}
     work = subprocess.Popen(
         [sys.executable, "-c", SLOW, str(campaign)], stdout=subprocess.PIPE, text=True
     )
     assert work.stdout is not None
     assert work.stdout.readline() == "ready\n"
-    time.sleep(0.5)
+    time.sleep(2)
     os.kill(work.pid, signal.SIGINT)
     out, _ = work.communicate(timeout=120)
     assert (out, work.returncode) == ("stopped\n", 7)
-    assert sorted(campaign.rglob("*")) == before
+    # Nothing but the store of what was done until then, which is whole and holds no run.
+    store = campaign / "results.sqlite"
+    after = {path: path.read_bytes() for path in campaign.rglob("*") if path.is_file()}
+    del after[store]
+    assert after == before
+    with closing(sqlite3.connect(store)) as results:
+        assert results.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+        assert results.execute("SELECT COUNT(*) FROM runs").fetchall() == [(0,)]
+        ((kept,),) = results.execute("SELECT COUNT(*) FROM results").fetchall()
+    rows = (campaign / "impacts.csv").read_text().count("\n") - 1
+    assert 0 < kept < rows
 
 
 def test_the_command_is_ended_by_ctrl_c(windfall: Any, campaign: Path) -> None:
