@@ -38,7 +38,7 @@ pub struct RunRecord<'a> {
     pub documents: Vec<DocumentRecord>,
     /// What could not be fitted.
     pub failures: Vec<FailureOutcome>,
-    /// Keys of results and documents that [`write_results`] has written: they are only named.
+    /// Keys of results and documents that `write_results` has written: they are only named.
     pub saved: HashSet<String>,
 }
 

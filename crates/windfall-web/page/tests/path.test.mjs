@@ -113,6 +113,11 @@ test("options that are saved in a form stand in campaign.toml", async () => {
   await law.uncheck();
   await page.getByRole("button", { name: "Save into campaign.toml" }).click();
   await page.getByRole("button", { name: "Save into campaign.toml" }).and(page.locator(":disabled")).waitFor();
+  // The button is off while it saves, too; what follows begins with the text that was saved.
+  await page.waitForFunction(() =>
+    [...document.querySelectorAll("textarea")].every((own) => !own.value.includes("hunt-crossley")),
+  );
+  assert.doesNotMatch(await readFile(join(place.directory, "apples/campaign.toml"), "utf8"), /hunt-crossley/);
 });
 
 test("text that was changed on disk meanwhile is shown, and one's own is not lost", async () => {
