@@ -9,6 +9,7 @@ pub mod found;
 pub mod inputs;
 pub mod known_names;
 pub mod named;
+pub mod npy;
 pub mod on_threads;
 pub mod option_value;
 pub mod place;

@@ -11,16 +11,13 @@ use std::path::Path;
 use windfall_campaign::settings::open_options::open_options;
 use windfall_files::error::Error;
 use windfall_files::inputs::protect;
+use windfall_files::npy::npy_header;
 use windfall_files::option_value::unusable;
 use windfall_files::table::write::csv_header;
-use windfall_files::text::quote::string_text;
 use windfall_files::write_file::write_streamed;
 use windfall_formats::contents::{Contents, TimeBase};
 use windfall_formats::open::open;
 use windfall_formats::reader::{Sink, is_missing};
-
-/// Length of the header of an array, whatever its number of rows; bytes per column are added.
-const NPY_HEADER: usize = 128;
 
 /// What is written.
 #[derive(Clone, Copy, PartialEq)]
@@ -206,27 +203,6 @@ impl Sink for Table<'_> {
         }
         Ok(())
     }
-}
-
-/// Header of a structured array: names and a number of rows that always takes the same room.
-///
-/// # Source
-/// NumPy Enhancement Proposal 1, "A Simple File Format for NumPy Arrays", version 3.0.
-fn npy_header(names: &[String], rows: u64) -> Vec<u8> {
-    let fields = names
-        .iter()
-        .map(|name| format!("({}, '<f8')", string_text(name)));
-    let fields = fields.collect::<Vec<_>>().join(", ");
-    let mut text =
-        format!("{{'descr': [{fields}], 'fortran_order': False, 'shape': ({rows:>20},), }}");
-    // Twelve bytes come before it; data begin at a multiple of 64.
-    let length = (12 + text.len() + 1).next_multiple_of(64).max(NPY_HEADER) - 12;
-    text += &" ".repeat(length - 1 - text.len());
-    text.push('\n');
-    let mut header = b"\x93NUMPY\x03\x00".to_vec();
-    header.extend((text.len() as u32).to_le_bytes());
-    header.extend(text.as_bytes());
-    header
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Everything goes in as words of a command line, text or bytes, and comes out as JSON or
 //! bytes; `python/windfall` makes objects of it. Nothing is calculated here or there.
 
+mod arrays;
 mod columns;
 mod command;
 mod fit;
@@ -18,7 +19,7 @@ mod _native {
     #[pymodule_export]
     use crate::command::{call, main};
     #[pymodule_export]
-    use crate::fit::{Fitted, fit};
+    use crate::fit::{FitRequest, Fitted, fit};
     #[pymodule_export]
     use crate::recording::{Recording, read};
 }

@@ -173,6 +173,24 @@ def test_rejects_what_cannot_be_fitted(
         wf.fit(**{**words, **change(arrays)})
 
 
+def test_a_request_that_is_remembered_is_no_other(
+    rig: wf.Pendulum, arrays: dict[str, Any]
+) -> None:
+    first = wf.fit(**arrays, rig=rig, law=LAW, seed=1)
+    assert wf.fit(**arrays, rig=rig, law=LAW, seed=1).result == first.result
+    # Equal in Python, and an option without a value.
+    with pytest.raises(ValueError, match="--seed"):
+        wf.fit(**arrays, rig=rig, law=LAW, seed=True)
+    heavy = dataclasses.replace(rig, inertia="0.0287 kg m^2")
+    k = wf.fit(**arrays, rig=heavy, law=LAW, seed=1).params["k"].value
+    assert k == pytest.approx(2 * first.params["k"].value, rel=0.5)
+    assert k != first.params["k"].value
+    for number in range(20):
+        assert wf.fit(**arrays, rig=rig, law=LAW, seed=number).id == "recording"
+    with pytest.raises(ValueError, match="expected samples, found none"):
+        wf.fit(**{name: own[:0] for name, own in arrays.items()}, rig=rig, law=LAW, seed=1)
+
+
 def test_takes_quantities_in_their_units(rig: wf.Pendulum, arrays: dict[str, Any]) -> None:
     expected = wf.fit(**arrays, rig=rig, law=LAW)
     unit = pint.UnitRegistry()

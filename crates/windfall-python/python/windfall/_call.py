@@ -87,7 +87,7 @@ class Words:
 
     def __init__(self) -> None:
         self._folder: TemporaryDirectory[str] | None = None
-        self._files: list[str] = []
+        self.files: list[str] = []
 
     def __enter__(self) -> Words:
         return self
@@ -136,11 +136,11 @@ class Words:
             from tempfile import TemporaryDirectory
 
             self._folder = TemporaryDirectory(prefix="windfall-")
-        self._files.append(os.path.join(self._folder.name, f"{len(self._files)}.csv"))
-        return self._files[-1]
+        self.files.append(os.path.join(self._folder.name, f"{len(self.files)}.csv"))
+        return self.files[-1]
 
     def without_files(self, text: str) -> str:
         """Messages that do not name the files of data frames."""
-        for file in self._files:
+        for file in self.files:
             text = text.replace(file, "the data frame")
         return text

@@ -14,9 +14,9 @@ import numpy as np
 from windfall import _native
 from windfall._call import Value, Words
 from windfall._errors import WindfallError
-from windfall._progress import bar
+from windfall._progress import Tell, bar
 from windfall._result import Result, table_html
-from windfall._samples import CHANNELS, npy_of, si_of
+from windfall._samples import CHANNELS, columns_of, si_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -67,35 +67,27 @@ _UNITS = {
 }
 
 
-class _Fitted:
-    """A fitted recording; what it says is read when it is first asked for."""
+class Fit:
+    """A law, fitted to one impact. What it says is read when it is first asked for."""
 
-    def __init__(self, native: _native.Fitted) -> None:
-        self.native = native
+    def __init__(self, native: _native.Fitted, place: int) -> None:
+        self._native = native
+        self._place = place
+
+    @property
+    def id(self) -> str:
+        """What the recording was called."""
+        return self._native.id(self._place)
+
+    @property
+    def law(self) -> str:
+        """The name of the law."""
+        return self._native.law(self._place)
 
     @cached_property
     def result(self) -> Result:
-        return Result.from_json(self.native.json())
-
-
-class Fit:
-    """A law, fitted to one impact.
-
-    * `id`: what the recording was called
-    * `law`: the name of the law
-    """
-
-    def __init__(self, fitted: _Fitted, place: int) -> None:
-        self._fitted = fitted
-        self._place = place
-        self.id, self.law = fitted.native.fits[place]
-        self._detail: dict[str, Any] | None = None
-
-    @property
-    def result(self) -> Result:
         """All that the command says of an impact."""
-        impact: Result = self._fitted.result.impacts[self._place]
-        return impact
+        return Result.from_json(self._native.impact(self._place))
 
     @property
     def params(self) -> Result:
@@ -121,15 +113,14 @@ class Fit:
         findings: tuple[Result, ...] = self.result["findings"]
         return findings
 
-    @property
+    @cached_property
     def detail(self) -> dict[str, Any]:
         """Samples, residuals, weights, covariance and draws, in groups for `arviz.from_dict`.
 
         They are found by fitting once more, when they are first asked for.
         """
-        if self._detail is None:
-            self._detail = json.loads(self._fitted.native.detail(self.law))
-        return self._detail
+        detail: dict[str, Any] = json.loads(self._native.detail(self._place))
+        return detail
 
     @property
     def estimates(self) -> tuple[str, ...]:
@@ -244,7 +235,7 @@ def fit(
     Arrays are in SI, or know their unit as those of pint do. Gaps have to be left out.
     """
     arrays = {"t": t, "x": x, "v": v, "a": a, "force": force}
-    found, failed = _fitted([(name, arrays)], rig, [law], False, options)
+    found, failed = _fitted([(name, arrays)], rig, [law], options, None)
     if failed:
         raise WindfallError(failed[0].message, failed[0])
     return found[0]
@@ -274,43 +265,71 @@ def fit_many(
         raise ValueError(f"names: there are {len(called)}, and {len(recordings)} recordings")
     laws = [law] if isinstance(law, str) else list(law)
     options = {**options, "threads": threads}
-    return Fits(*_fitted(list(zip(called, recordings)), rig, laws, progress, options))
+    with bar(progress) as tell:
+        return Fits(*_fitted(list(zip(called, recordings)), rig, laws, options, tell))
 
 
 def _fitted(
     recordings: Sequence[tuple[str, Mapping[str, Any]]],
     rig: Rig,
     laws: Sequence[str],
-    progress: bool,
     options: Mapping[str, Any],
+    tell: Tell | None,
 ) -> tuple[list[Fit], list[Result]]:
     """Fits, and what could not be fitted."""
     if not recordings:
         return [], []
-    held = [(f"{name}.npy", npy_of(arrays)) for name, arrays in recordings]
-    given = {tuple(name for name in CHANNELS if own.get(name) is not None) for _, own in recordings}
+    held = [(name, columns_of(arrays)) for name, arrays in recordings]
+    given = {tuple(column[0] for column in columns) for _, columns in held}
     if len(given) > 1:
         raise ValueError("recordings: expected the same arrays in all of them")
-    channels = [(name, *CHANNELS[name]) for name in given.pop()]
-    words = [f"--channel={channel}={name}:{unit}" for name, channel, unit in channels]
-    with Words() as own, bar(progress) as tell:
-        words += own.of_option("--law", list(laws))
-        for name, value in options.items():
-            words += own.of_option(f"--{name.replace('_', '-')}", value)
-        found = _native.fit(held, [*_rig_words(rig), "--time=t", *words], tell)
+    request = _request(rig, laws, given.pop(), options)
+    found = _native.fit(held, request, tell)
     fits, failed = [], []
     for (name, _), (native, wrong) in zip(recordings, found):
         if native is None:
-            message, request = wrong or ("", False)
-            if request:
+            message, is_request = wrong or ("", False)
+            if is_request:
                 raise ValueError(message)
             failed.append(Result({"id": name, "law": None, "message": message, "findings": []}))
             continue
-        fitted = _Fitted(native)
-        fits += [Fit(fitted, place) for place in range(len(native.fits))]
-        if native.failed:
-            failed += fitted.result.failed
+        fits += [Fit(native, place) for place in range(len(native))]
+        failed += [Result.from_json(own) for own in native.failed()]
     return fits, failed
+
+
+_requests: dict[Any, _native.FitRequest] = {}
+"""Requests by what they were made of: to read one takes as long as to fit an impact, and the
+next recording usually has the same."""
+_REMEMBERED = 8
+
+
+def _request(
+    rig: Rig, laws: Sequence[str], given: tuple[str, ...], options: Mapping[str, Any]
+) -> _native.FitRequest:
+    """What is asked of recordings with the arrays `given`."""
+    # Numbers that are equal can stand for different words: `True` and 1.
+    key: Any = (rig, *laws, given, *options.items(), *map(type, options.values()))
+    try:
+        known = _requests.get(key)
+    except TypeError:
+        known, key = None, None
+    if known is not None:
+        return known
+    channels = [(name, *CHANNELS[name]) for name in given if name in CHANNELS]
+    words = [*_rig_words(rig), "--time=t"]
+    words += [f"--channel={channel}={name}:{unit}" for name, channel, unit in channels]
+    with Words() as own:
+        words += own.of_option("--law", laws)
+        for name, value in options.items():
+            words += own.of_option(f"--{name.replace('_', '-')}", value)
+        request = _native.FitRequest(words)
+        # The file of a data frame is removed now.
+        if key is not None and not own.files:
+            if len(_requests) == _REMEMBERED:
+                _requests.clear()
+            _requests[key] = request
+    return request
 
 
 def _rig_words(rig: Rig) -> list[str]:
