@@ -226,7 +226,7 @@ mod tests {
             made: String::new(),
             simulated: None,
             findings: vec![FindingOutcome {
-                code: "clipped".to_owned(),
+                code: "clipped".into(),
                 message: hostile.to_owned(),
             }],
             failed: Vec::new(),

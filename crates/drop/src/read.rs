@@ -14,6 +14,7 @@ use windfall_campaign::settings::rig::STANDARD_GRAVITY;
 use windfall_campaign::settings::shared::read_shared;
 use windfall_cards::user_laws::read::user_laws;
 use windfall_files::error::{DropQuantity, Error, Place};
+use windfall_files::name::Name;
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
@@ -160,7 +161,7 @@ pub fn drop_of(campaign: &DropCampaign, entry: &ImpactEntry) -> Result<Drop, Err
             place: of_entry.0.clone(),
             item: entry.id.clone(),
             needed,
-            found: match columns.any(|column: &String| column.starts_with(needed.prefix)) {
+            found: match columns.any(|column: &Name| column.starts_with(needed.prefix)) {
                 true => "blank or in no unit of it",
                 false => "not there",
             },
@@ -177,7 +178,7 @@ pub fn drop_of(campaign: &DropCampaign, entry: &ImpactEntry) -> Result<Drop, Err
 ///
 /// * `usual`: value and uncertainty where the row has none
 fn measured(
-    (place, cells): &(Place, &[(String, String)]),
+    (place, cells): &(Place, &[(Name, String)]),
     name: &str,
     unit: &str,
     usual: (Option<f64>, f64),

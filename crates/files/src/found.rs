@@ -3,6 +3,7 @@
 //! The names of the fields are the keys of the JSON that scripts rely on.
 //! All numbers are SI.
 
+use crate::name::Name;
 use crate::named::{Named, grouped};
 use serde::{Deserialize, Serialize};
 use windfall_distribution::quantile::median;
@@ -20,7 +21,8 @@ pub struct EstimateOutcome {
     /// Upper end of the 95 % interval.
     pub high: Option<f64>,
     /// SI unit.
-    pub unit: String,
+    #[schema(value_type = String)]
+    pub unit: Name,
     /// Whether the value was held, not estimated.
     pub held: bool,
 }
@@ -36,7 +38,8 @@ impl EstimateOutcome {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct FindingOutcome {
     /// Short name for scripts.
-    pub code: String,
+    #[schema(value_type = String)]
+    pub code: Name,
     /// A sentence.
     pub message: String,
 }
@@ -47,7 +50,7 @@ impl FindingOutcome {
         let mut message = message.into();
         message.shrink_to_fit();
         Self {
-            code: code.to_owned(),
+            code: code.into(),
             message,
         }
     }

@@ -8,6 +8,7 @@ pub mod expand;
 pub mod found;
 pub mod inputs;
 pub mod known_names;
+pub mod name;
 pub mod named;
 pub mod npy;
 pub mod on_threads;

@@ -1,9 +1,9 @@
 //! Values under names, in the order they were given; an object in JSON.
 
+use crate::name::Name;
 use serde::de::{MapAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use smol_str::SmolStr;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::marker::PhantomData;
@@ -11,7 +11,7 @@ use std::marker::PhantomData;
 /// Values under names, in the order they were given.
 #[derive(Clone, Debug, PartialEq, utoipa::ToSchema)]
 #[schema(value_type = std::collections::BTreeMap<String, T>)]
-pub struct Named<T>(pub Vec<(SmolStr, T)>);
+pub struct Named<T>(pub Vec<(Name, T)>);
 
 impl<T> Default for Named<T> {
     fn default() -> Self {
@@ -19,7 +19,7 @@ impl<T> Default for Named<T> {
     }
 }
 
-impl<N: Into<SmolStr>, T> FromIterator<(N, T)> for Named<T> {
+impl<N: Into<Name>, T> FromIterator<(N, T)> for Named<T> {
     fn from_iter<I: IntoIterator<Item = (N, T)>>(pairs: I) -> Self {
         let pairs = pairs.into_iter();
         let mut named: Vec<_> = pairs.map(|(name, value)| (name.into(), value)).collect();
@@ -55,7 +55,7 @@ impl<T> Named<T> {
     }
 
     /// Adds a value behind the others.
-    pub fn push(&mut self, name: impl Into<SmolStr>, value: T) {
+    pub fn push(&mut self, name: impl Into<Name>, value: T) {
         self.0.push((name.into(), value));
     }
 

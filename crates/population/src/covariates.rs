@@ -3,6 +3,7 @@
 
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_files::error::{Error, Place};
+use windfall_files::name::Name;
 use windfall_files::option_value::unusable;
 use windfall_files::text::toml_source::suggestion;
 use windfall_identify::population::model::Covariate;
@@ -188,8 +189,8 @@ fn cell<'a>(
     entry: &'a ImpactEntry,
     column: &str,
 ) -> Option<(&'a str, Place)> {
-    let find = |cells: &'a [(String, String)]| {
-        let found = cells.iter().find(|(name, _)| name == column);
+    let find = |cells: &'a [(Name, String)]| {
+        let found = cells.iter().find(|(name, _)| *name == *column);
         found.map(|(_, cell)| cell.trim())
     };
     let place = |file: &str, line| Place::at(&campaign.shared.directory.join(file), line);

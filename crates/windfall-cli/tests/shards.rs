@@ -95,6 +95,79 @@ fn repeats_the_rows_of_the_whole_campaign() {
 }
 
 #[test]
+fn a_list_names_impacts_by_id_recording_and_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    run(folder, SIMULATE);
+    run(folder, &format!("fit study {LAWS} --out whole.csv"));
+    let table = rows(&folder.join("study/impacts.csv"));
+    let cell = |row: usize, column: &str| table[row][column].clone();
+    // Out of order, one twice, with blank lines and Windows' ends of lines.
+    let list = format!(
+        "study/raw/{}\r\n\n{}\n  {}\n{}",
+        cell(9, "file").trim_start_matches("raw/"),
+        cell(4, "file"),
+        cell(0, "id"),
+        cell(4, "id")
+    );
+    let whole = rows(&folder.join("whole.csv"));
+    let ids = [0, 4, 9].map(|row| cell(row, "id"));
+    let expected: Vec<_> = whole
+        .iter()
+        .filter(|row| ids.contains(&row["id"]))
+        .collect();
+    assert_eq!(expected.len(), 6);
+    std::fs::write(folder.join("list.txt"), &list).unwrap();
+    run(
+        folder,
+        &format!("fit study {LAWS} --only list.txt --out some.csv"),
+    );
+    assert_eq!(
+        rows(&folder.join("some.csv")).iter().collect::<Vec<_>>(),
+        expected
+    );
+    let mut piped = Command::cargo_bin("windfall").unwrap();
+    let words = format!("fit study {LAWS} --only - --out piped.csv");
+    piped
+        .args(words.split(' '))
+        .current_dir(folder)
+        .write_stdin(list);
+    piped.assert().success();
+    let found = std::fs::read(folder.join("piped.csv")).unwrap();
+    assert_eq!(found, std::fs::read(folder.join("some.csv")).unwrap());
+
+    for (list, told) in [
+        ("\n\n", "names no impact"),
+        (
+            "\nnobody\n",
+            "line 2: no impact has the id or recording \"nobody\"; there are",
+        ),
+    ] {
+        std::fs::write(folder.join("list.txt"), list).unwrap();
+        let found = refused(folder, "fit study --only list.txt --out a.csv");
+        assert!(found.contains(told), "{found}");
+    }
+    std::fs::write(folder.join("list.csv"), &ids[0]).unwrap();
+    for (words, told) in [
+        ("fit study --only absent.txt --out a.csv", "absent.txt"),
+        ("fit study --only list.txt", "--out"),
+        ("fit study --only list.txt --out list.txt", ".parquet"),
+        (
+            "fit study --only list.csv --out list.csv --force",
+            "an input",
+        ),
+        (
+            "fit study --only list.txt --shard 1/2 --out a.csv",
+            "cannot be used",
+        ),
+    ] {
+        let found = refused(folder, words);
+        assert!(found.contains(told), "{words}: {found}");
+    }
+    assert!(!folder.join("a.csv").exists());
+}
+
+#[test]
 fn rejects_parts_that_cannot_be() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -13,6 +13,7 @@ use windfall_campaign::settings::read::read_campaign;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
+use windfall_files::name::Name;
 use windfall_files::option_value::word_of;
 use windfall_files::provenance::digest_text;
 use windfall_files::text::quote::{command, path_word};
@@ -280,11 +281,11 @@ fn options_of(campaign: &ImpactCampaign) -> FitOptionsView {
 }
 
 /// The table of named cells; columns in the order of the first row.
-fn table_of<'a>(rows: impl Iterator<Item = &'a Vec<(String, String)>>) -> TableView {
+fn table_of<'a>(rows: impl Iterator<Item = &'a Vec<(Name, String)>>) -> TableView {
     let mut table = TableView::default();
     for cells in rows {
         if table.columns.is_empty() {
-            table.columns = cells.iter().map(|(name, _)| name.clone()).collect();
+            table.columns = cells.iter().map(|(name, _)| name.to_string()).collect();
         }
         let row = cells.iter().map(|(_, cell)| cell.clone());
         table.rows.push(row.collect());

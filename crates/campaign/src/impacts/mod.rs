@@ -10,6 +10,7 @@ pub mod findings;
 pub mod fit;
 pub mod groups;
 pub mod key;
+mod listed;
 pub mod mass;
 mod response;
 pub mod run;

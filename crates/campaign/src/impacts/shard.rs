@@ -3,13 +3,14 @@
 use crate::impacts::bench::find_rig;
 use crate::impacts::fit::Fits;
 use crate::impacts::key::run_options;
+use crate::impacts::listed::listed;
 use crate::impacts::mass::RigFound;
 use crate::impacts::table::ImpactTable;
 use crate::pipeline::evaluate::Evaluation;
 use crate::pipeline::request::{FitRequest, apply_request};
 use crate::result::counted::mark_alone;
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind, campaign_kind};
-use crate::settings::model::ImpactCampaign;
+use crate::settings::model::{Campaign, ImpactCampaign};
 use crate::settings::read::read_campaign;
 use serde::Serialize;
 use std::ops::Range;
@@ -60,6 +61,41 @@ impl Shard {
     }
 }
 
+/// Which impacts of a campaign are fitted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Those of one of so many parts.
+    Shard(Shard),
+    /// Those that a list names: a file, or "-" for standard input.
+    List(PathBuf),
+}
+
+impl Part {
+    /// Leaves out the other impacts.
+    fn keep(&self, campaign: &mut Campaign) -> Result<(), Error> {
+        match self {
+            Self::Shard(shard) => {
+                let rows = shard.rows(campaign.entries.len());
+                campaign.entries.truncate(rows.end);
+                campaign.entries.drain(..rows.start);
+            }
+            Self::List(list) => {
+                let mut wanted = listed(list, campaign)?.into_iter();
+                campaign.entries.retain(|_| wanted.next() == Some(true));
+            }
+        }
+        Ok(())
+    }
+
+    /// The option that says so.
+    fn option(&self) -> &'static str {
+        match self {
+            Self::Shard(_) => "--shard",
+            Self::List(_) => "--only",
+        }
+    }
+}
+
 /// What came of a part.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
 pub struct ShardOutcome {
@@ -86,16 +122,16 @@ pub struct ShardOutcome {
 ///
 /// # Errors
 /// The campaign or the request is wrong; no impact of the part could be fitted.
-pub fn fit_shard(
+pub fn fit_part(
     directory: &Path,
     request: &FitRequest,
-    shard: Shard,
+    part: &Part,
     out: &Path,
     progress: Progress,
 ) -> Result<ShardOutcome, Error> {
     if campaign_kind(directory)? != CampaignKind::Impacts {
         let problem = "only campaigns of single impacts are fitted in parts";
-        return Err(unusable("--shard", problem));
+        return Err(unusable(part.option(), problem));
     }
     let mut campaign = read_campaign(directory)?;
     apply_request(&mut campaign, request)?;
@@ -104,14 +140,12 @@ pub fn fit_shard(
     on_threads(request.threads, || {
         // The bench is estimated from all impacts.
         let rig = find_rig(&mut campaign)?;
-        let rows = shard.rows(campaign.shared.entries.len());
-        campaign.shared.entries.truncate(rows.end);
-        campaign.shared.entries.drain(..rows.start);
+        part.keep(&mut campaign.shared)?;
         let table = table_of(&campaign, &rig)?;
         let mut found = ShardOutcome {
             windfall: VERSION.to_owned(),
             campaign: campaign.shared.title.clone(),
-            impacts: rows.len(),
+            impacts: campaign.shared.entries.len(),
             rows: 0,
             failed: Vec::new(),
             file: out.to_path_buf(),

@@ -11,6 +11,7 @@ use crate::settings::rig::rig_plan;
 use crate::settings::template::UNWRITTEN;
 use std::path::Path;
 use windfall_files::error::Error;
+use windfall_files::name::Name;
 use windfall_files::text::toml_source::{TomlSource, parse_source};
 use windfall_signal::measure::Surroundings;
 use windfall_signal::{ExtractOptions, impacts_in};
@@ -65,7 +66,7 @@ impl PartPlan {
     ///
     /// # Errors
     /// The recording cannot be read, or shows no contact.
-    pub fn parts(&self, path: &Path, cells: &[(String, String)]) -> Result<Vec<Part>, Error> {
+    pub fn parts(&self, path: &Path, cells: &[(Name, String)]) -> Result<Vec<Part>, Error> {
         let files = FilePlan {
             directory: path.parent().map_or_else(Default::default, Path::to_owned),
             within: None,

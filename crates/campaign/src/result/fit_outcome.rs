@@ -4,8 +4,8 @@ use crate::result::interval_outcome::interval_outcome;
 use crate::result::outcome::{ImpactOutcome, ResidualOutcome};
 use crate::result::quantity::{FittedMotion, QUANTITIES, Quantity};
 use crate::settings::model::ImpactEntry;
-use smol_str::{SmolStr, format_smolstr};
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
+use windfall_files::name::Name;
 use windfall_files::named::Named;
 use windfall_identify::fit::problem::LawProblem;
 use windfall_identify::fit::result::{CommonShift, Estimate, Fit, QuantityFit};
@@ -82,7 +82,7 @@ fn estimate(estimate: &Estimate) -> EstimateOutcome {
         sd: finite(estimate.sd),
         low: finite(estimate.low),
         high: finite(estimate.high),
-        unit: estimate.unit.clone(),
+        unit: estimate.unit.as_str().into(),
         held: false,
     }
 }
@@ -105,7 +105,7 @@ fn parameters(fit: &Fit, problem: &LawProblem) -> Named<EstimateOutcome> {
                 sd: None,
                 low: None,
                 high: None,
-                unit: fit.law.unit_of(index),
+                unit: fit.law.unit_of(index).into(),
                 held: true,
             },
         };
@@ -141,7 +141,7 @@ fn correlations(fit: &Fit) -> Named<f64> {
     for (i, row) in fit.correlations.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1) {
             if value.is_finite() {
-                pairs.push((format_smolstr!("{}, {}", names[i], names[j]), *value));
+                pairs.push((Name::from(format!("{}, {}", names[i], names[j])), *value));
             }
         }
     }
@@ -173,12 +173,12 @@ fn fitted_values(motion: &FittedMotion) -> Named<Option<f64>> {
 
 /// Values of the derived quantities, their uncertainties, and where they come from: the
 /// signals where they show them, else the fitted law.
-type Derived = (Named<Option<f64>>, Named<f64>, Named<SmolStr>);
+type Derived = (Named<Option<f64>>, Named<f64>, Named<Name>);
 
 fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
     let (mut values, mut sds, mut sources) = (Vec::new(), Vec::new(), Vec::new());
     for quantity in &QUANTITIES {
-        let name = || SmolStr::new_static(quantity.name);
+        let name = || Name::from(quantity.name);
         let (value, sd) = quantity.measured(measured);
         sds.extend(sd.map(|sd| (name(), sd)));
         let (value, source) = match (value, fitted.get(quantity.name)) {

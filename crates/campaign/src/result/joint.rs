@@ -2,10 +2,10 @@
 
 use crate::result::outcome::{ImpactOutcome, JointOutcome};
 use itertools::Itertools;
-use smol_str::{SmolStr, format_smolstr};
 use windfall_contact::laws::any_law::LARGEST_PARAMETERS as MOST;
 use windfall_distribution::tail::{chi_squared_upper, normal_upper_quantile, t_upper_quantile};
 use windfall_files::found::{EstimateOutcome, FindingOutcome};
+use windfall_files::name::Name;
 use windfall_files::named::{Named, grouped};
 use windfall_numerics::cholesky;
 
@@ -106,19 +106,15 @@ fn joint_fit(law: &str, specimen: &str, impacts: &[&ImpactOutcome]) -> Option<Jo
                 sd: Some(sd(i).hypot(shift)),
                 low: Some(value[i] - reach),
                 high: Some(value[i] + reach),
-                unit: if alike {
-                    first.unit.clone()
-                } else {
-                    String::new()
-                },
+                unit: if alike { first.unit } else { Name::default() },
                 held: false,
             };
-            (name.clone(), estimate)
+            (*name, estimate)
         })
         .collect();
     let pairs = (0..size).array_combinations().map(|[i, j]| {
         let correlation = covariance[i][j] / (covariance[i][i] * covariance[j][j]).sqrt();
-        (format_smolstr!("{}, {}", names[i], names[j]), correlation)
+        (format!("{}, {}", names[i], names[j]), correlation)
     });
     Some(JointOutcome {
         specimen: specimen.to_owned(),
@@ -203,13 +199,12 @@ fn common_shifts<F: Fn(&Vector) -> Vector>(
             }
         }
         let sums = names.iter().zip(sum);
-        sums.map(|(name, sum)| (SmolStr::from(*name), sum))
-            .collect()
+        sums.map(|(name, sum)| (Name::from(*name), sum)).collect()
     };
     let causes: Vec<&str> = causes.unique().collect();
     causes
         .iter()
-        .map(|cause| (SmolStr::from(*cause), of(cause)))
+        .map(|cause| (Name::from(*cause), of(cause)))
         .collect()
 }
 

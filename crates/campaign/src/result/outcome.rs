@@ -5,8 +5,8 @@
 
 use crate::result::interval_outcome::IntervalOutcome;
 use serde::{Deserialize, Serialize};
-use smol_str::SmolStr;
 use windfall_files::found::{EstimateOutcome, FailureOutcome, FindingOutcome, SpreadOutcome};
+use windfall_files::name::Name;
 use windfall_files::named::Named;
 use windfall_identify::fit::result::PHASES;
 
@@ -77,7 +77,7 @@ pub struct ImpactOutcome {
     pub derived_sd: Named<f64>,
     /// "signal" or "fit" for each entry of `derived`.
     #[schema(value_type = Named<String>)]
-    pub derived_from: Named<SmolStr>,
+    pub derived_from: Named<Name>,
     /// The same quantities in the motion under the fitted law; `restitution` is
     /// what the law delivers. A law that takes a restitution as a parameter has
     /// it here too, as `nominal_restitution`.

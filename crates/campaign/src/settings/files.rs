@@ -9,6 +9,7 @@ use crate::settings::template::is_template_file;
 use std::path::{Path, PathBuf};
 use windfall_files::confined::named_file;
 use windfall_files::error::{Error, Place};
+use windfall_files::name::Name;
 use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
     Needed, TomlSource, choice, missing, place_at, positive_quantity, refused, suggestion,
@@ -257,7 +258,7 @@ pub fn check_placeholders(
 ///
 /// # Errors
 /// The name of a placeholder that is no column.
-pub fn fill_placeholders(text: &str, cells: &[(String, String)]) -> Result<String, String> {
+pub fn fill_placeholders(text: &str, cells: &[(Name, String)]) -> Result<String, String> {
     let mut rest = text;
     let mut whole = String::new();
     while let Some((before, after)) = rest.split_once('{') {

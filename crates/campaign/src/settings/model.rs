@@ -7,6 +7,7 @@ use std::sync::Arc;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::found::FindingOutcome;
+use windfall_files::name::Name;
 use windfall_formats::open::OpenOptions;
 use windfall_identify::fit::problem::{FitOptions, Known};
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
@@ -48,7 +49,7 @@ impl Campaign {
         let specimen = self.specimen_of(entry);
         let specimen = specimen.map_or(&[][..], |specimen| &specimen.cells);
         let mut cells = specimen.iter().chain(&entry.cells);
-        let (_, cell) = cells.find(|(name, _)| name == column)?;
+        let (_, cell) = cells.find(|(name, _)| name == column.as_str())?;
         Some(cell.clone())
     }
 }
@@ -267,7 +268,7 @@ pub struct Specimen {
     /// Line in specimens.csv.
     pub line: usize,
     /// All columns: name and cell.
-    pub cells: Vec<(String, String)>,
+    pub cells: Vec<(Name, String)>,
 }
 
 /// One row of impacts.csv.
@@ -286,5 +287,5 @@ pub struct ImpactEntry {
     /// End of the part of the recording to use; s.
     pub to: Option<f64>,
     /// All columns: name and cell.
-    pub cells: Vec<(String, String)>,
+    pub cells: Vec<(Name, String)>,
 }

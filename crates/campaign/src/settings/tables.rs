@@ -7,6 +7,7 @@ use std::path::Path;
 use windfall_files::error::{Error, Place};
 use windfall_files::inputs::check_regular;
 use windfall_files::known_names::known_names;
+use windfall_files::name::Name;
 use windfall_files::table::csv::{Row, Table, column_index, read_table};
 
 /// Columns of impacts.csv that bound the part of the recording to use; s.
@@ -121,8 +122,8 @@ fn optional_number(table: &Table, row: &Row, column: &str) -> Result<Option<f64>
     }
 }
 
-fn named_cells(table: &Table, row: &Row) -> Vec<(String, String)> {
-    let columns = table.columns.iter().cloned();
+fn named_cells(table: &Table, row: &Row) -> Vec<(Name, String)> {
+    let columns = table.columns.iter().map(Name::from);
     columns.zip(row.cells.iter().cloned()).collect()
 }
 
@@ -176,11 +177,7 @@ mod tests {
             (rows[1].line, rows[1].from, rows[1].to),
             (3, None, Some(1.0))
         );
-        assert!(
-            rows[1]
-                .cells
-                .contains(&("level".to_owned(), "3".to_owned()))
-        );
+        assert!(rows[1].cells.contains(&("level".into(), "3".to_owned())));
     }
 
     #[test]

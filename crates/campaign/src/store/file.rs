@@ -16,13 +16,13 @@ const STORE_VERSION: i64 = 3;
 pub(crate) const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Settings of SQLite for writing. With a rollback journal and full synchronisation, a committed
-/// run is on disk. The cache holds 16 MiB: with the usual 2 MiB, the pages of a large run are read
+/// run is on disk. The cache holds 8 MiB: with the usual 2 MiB, the pages of a large run are read
 /// back from disk while it is written.
 pub(crate) const WRITING: [(&str, &str); 4] = [
     ("journal_mode", "DELETE"),
     ("synchronous", "FULL"),
     ("foreign_keys", "ON"),
-    ("cache_size", "-16384"),
+    ("cache_size", "-8192"),
 ];
 
 /// Opens the store if it exists, after making sure that it is ours.

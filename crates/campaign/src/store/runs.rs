@@ -12,13 +12,13 @@ use crate::store::documents::{
 };
 use crate::store::file::{PATIENCE, WRITING, create_schema, execute, open_existing, store_error};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
-use smol_str::SmolStr;
 use std::collections::HashSet;
 use std::path::Path;
 use windfall_files::confined::discard;
 use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::inputs::note_written;
+use windfall_files::name::Name;
 use windfall_files::provenance::{VERSION, time_now};
 
 /// One run, as it goes into the store.
@@ -270,12 +270,12 @@ fn insert_result(
                 estimate.sd,
                 estimate.low,
                 estimate.high,
-                estimate.unit
+                estimate.unit.as_str()
             ],
         )?;
     }
     for (name, value) in &result.derived.0 {
-        let from = result.derived_from.get(name).map_or("", SmolStr::as_str);
+        let from = result.derived_from.get(name).map_or("", Name::as_str);
         execute(
             transaction,
             "INSERT INTO derived (key, name, value, value_from) VALUES (?1, ?2, ?3, ?4)",
@@ -286,7 +286,7 @@ fn insert_result(
         execute(
             transaction,
             "INSERT INTO findings (key, position, code, message) VALUES (?1, ?2, ?3, ?4)",
-            params![key, position as i64, finding.code, finding.message],
+            params![key, position as i64, finding.code.as_str(), finding.message],
         )?;
     }
     Ok(())
@@ -343,7 +343,7 @@ mod tests {
             sd: Some(1e-300),
             low: Some(-0.0),
             high: None,
-            unit: "N/m^1.5".to_owned(),
+            unit: "N/m^1.5".into(),
             held: false,
         };
         ImpactOutcome {

@@ -4,6 +4,7 @@
 use crate::intervals::speed::SpeedOutcome;
 use serde::Serialize;
 use windfall_files::found::FindingOutcome;
+use windfall_files::name::Name;
 
 /// Drops, and what they say together.
 #[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
@@ -53,7 +54,7 @@ pub struct TimedDropOutcome {
     pub left_out: Option<String>,
     /// Other columns of its row in the table, with their cells.
     #[serde(skip)]
-    pub labels: Vec<(String, String)>,
+    pub labels: Vec<(Name, String)>,
 }
 
 /// One impact.

@@ -3,6 +3,7 @@
 use crate::intervals::estimate::TimedDrop;
 use crate::intervals::request::BouncesRequest;
 use windfall_files::error::{Error, Place};
+use windfall_files::name::Name;
 use windfall_files::option_value::unusable;
 use windfall_files::table::csv::{Row, Table, read_table};
 use windfall_files::table::data::{EXCLUDE_COLUMN, MISSING, excludes};
@@ -19,7 +20,7 @@ pub struct WrittenDrop {
     /// Where it stands, for messages.
     pub place: String,
     /// Other columns of its row, with their cells.
-    pub labels: Vec<(String, String)>,
+    pub labels: Vec<(Name, String)>,
     /// Whether the column `exclude` leaves it out.
     pub excluded: bool,
 }
@@ -206,8 +207,9 @@ fn rows_of_drops(
         for (column, unit) in columns {
             intervals.push(cell_interval(table, row, *column, *unit, written)?);
         }
-        let pairs = table.columns.iter().cloned().zip(row.cells.iter().cloned());
-        let cells: Vec<(String, String)> = pairs.collect();
+        let names = table.columns.iter().map(Name::from);
+        let pairs = names.zip(row.cells.iter().cloned());
+        let cells: Vec<(Name, String)> = pairs.collect();
         let height = cell_quantity(&cells, "drop_height", "m", &place)?;
         let height = match height {
             Some(height) => Some(height),
@@ -228,8 +230,7 @@ fn rows_of_drops(
         });
         if let Some(last) = written.drops.last_mut() {
             last.labels = labels.map(|(_, own)| own.clone()).collect();
-            let excluded =
-                |(name, cell): &(String, String)| name == EXCLUDE_COLUMN && excludes(cell);
+            let excluded = |(name, cell): &(Name, String)| name == EXCLUDE_COLUMN && excludes(cell);
             last.excluded = cells.iter().any(excluded);
         }
     }

@@ -189,7 +189,7 @@ pub fn csv_of_bounces(outcome: &BouncesOutcome) -> Result<String, Error> {
     ]);
     let mut labels: Vec<&str> = Vec::new();
     for (name, _) in outcome.drops.iter().flat_map(|own| &own.labels) {
-        if !labels.contains(&name.as_str()) && !header.contains(name) {
+        if !labels.contains(&name.as_str()) && !header.iter().any(|own| own == name.as_str()) {
             labels.push(name);
         }
     }

@@ -2,6 +2,7 @@
 //! the column: "mass_g", "radius_mm", "density_kg_m3".
 
 use crate::error::{Error, Place};
+use crate::name::Name;
 use windfall_numerics::unit::quantity::{LARGEST, parse_as};
 
 /// The quantity `name` of a row; SI. `None` where column or cell is blank.
@@ -13,7 +14,7 @@ use windfall_numerics::unit::quantity::{LARGEST, parse_as};
 /// # Errors
 /// The cell is no positive number.
 pub fn cell_quantity(
-    cells: &[(String, String)],
+    cells: &[(Name, String)],
     name: &str,
     unit: &str,
     place: &Place,
@@ -35,7 +36,7 @@ pub fn cell_quantity(
             Ok(value) if value > 0.0 && value <= LARGEST => Ok(Some(value * scale)),
             _ => Err(Error::CellNotPositive {
                 place: place.clone(),
-                column: column.clone(),
+                column: column.to_string(),
                 text: cell.clone(),
             }),
         };
@@ -65,7 +66,7 @@ mod tests {
     use std::path::Path;
 
     fn find(column: &str, cell: &str, name: &str, unit: &str) -> Result<Option<f64>, String> {
-        let cells = [(column.to_owned(), cell.to_owned())];
+        let cells = [(column.into(), cell.to_owned())];
         let place = Place::at(Path::new("specimens.csv"), 0);
         cell_quantity(&cells, name, unit, &place).map_err(|error| error.to_string())
     }

@@ -56,7 +56,11 @@ impl Rows {
         self.recordings += 1;
         let file = name_of(path);
         let plan = self.plan.as_ref().ok();
-        let parts = plan.and_then(|plan| plan.parts(path, &read.of_impact).ok());
+        let cells = read.of_impact.iter();
+        let cells: Vec<_> = cells
+            .map(|(name, cell)| (name.into(), cell.clone()))
+            .collect();
+        let parts = plan.and_then(|plan| plan.parts(path, &cells).ok());
         let parts = parts.unwrap_or_else(|| vec![Part::default()]);
         let count = parts.len();
         if count > 1 {

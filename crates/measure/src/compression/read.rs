@@ -13,6 +13,7 @@ use windfall_contact::apparent_modulus::PrincipalRadii;
 use windfall_contact::curvature::{radii_of_ellipsoid, radius_from_chord};
 use windfall_contact::expression::LawExpression;
 use windfall_files::error::{Error, Place};
+use windfall_files::name::Name;
 use windfall_files::text::cell_quantity::cell_quantity;
 use windfall_files::text::spanned::Spanned;
 use windfall_files::text::toml_source::{
@@ -201,7 +202,7 @@ fn fit_range(
 /// # Errors
 /// A cell is no positive number.
 pub fn specimen_radii(
-    cells: &[(String, String)],
+    cells: &[(Name, String)],
     place: &Place,
 ) -> Result<Option<PrincipalRadii>, Error> {
     let length = |name: &str| cell_quantity(cells, name, "m", place);

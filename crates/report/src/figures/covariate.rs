@@ -60,7 +60,7 @@ pub fn covariates_of(campaign: &ImpactCampaign, impacts: &[&ImpactOutcome]) -> V
             continue;
         }
         found.push(Covariate {
-            name: name.clone(),
+            name: name.to_string(),
             unit: String::new(),
             values: cells.iter().map(|cell| number((*cell)?)).collect(),
         });

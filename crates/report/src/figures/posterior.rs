@@ -2,11 +2,11 @@
 //! values go together.
 
 use crate::figures::parameters::own_ellipse;
-use smol_str::SmolStr;
 use std::f64::consts::TAU;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
+use windfall_files::name::Name;
 
 /// Points of a density.
 const POINTS: usize = 161;
@@ -18,7 +18,7 @@ const MOST_SHOWN: usize = 4;
 /// ellipse of their standard deviations; `None` where the intervals were not drawn.
 pub fn figure_of_posterior(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let drawn = &outcome.intervals.drawn.0;
-    let paired: Vec<&(SmolStr, Vec<f64>)> = drawn
+    let paired: Vec<&(Name, Vec<f64>)> = drawn
         .iter()
         .filter(|(name, _)| outcome.parameters.get(name).is_some())
         .take(MOST_SHOWN)
@@ -107,7 +107,7 @@ fn density(draws: &[f64]) -> Option<Vec<(f64, f64)>> {
     Some((0..POINTS).map(|i| (x(i), at(x(i)))).collect())
 }
 
-fn pair(outcome: &ImpactOutcome, x: &(SmolStr, Vec<f64>), y: &(SmolStr, Vec<f64>)) -> Panel {
+fn pair(outcome: &ImpactOutcome, x: &(Name, Vec<f64>), y: &(Name, Vec<f64>)) -> Panel {
     let points = x.1.iter().copied().zip(y.1.iter().copied()).collect();
     let mut all = vec![Series::new("draws", Style::Dots, points).coloured(0)];
     if let Some(ellipse) = own_ellipse(outcome, &x.0, &y.0) {

@@ -1,10 +1,10 @@
 //! How the likelihood falls on either side of each estimate.
 
-use smol_str::SmolStr;
 use windfall_campaign::result::interval_outcome::ProfileOutcome;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_draw::xy::{Figure, Panel, Series, Style};
 use windfall_files::found::EstimateOutcome;
+use windfall_files::name::Name;
 
 /// Points of the parabola.
 const POINTS: usize = 81;
@@ -14,7 +14,7 @@ const POINTS: usize = 81;
 /// `None` where the intervals were not made by profiles.
 pub fn figure_of_profiles(title: &str, outcome: &ImpactOutcome) -> Option<Figure> {
     let profiles = outcome.intervals.profiles.0.iter();
-    let panel = |(name, profile): &(SmolStr, ProfileOutcome)| {
+    let panel = |(name, profile): &(Name, ProfileOutcome)| {
         let parameter = outcome.parameters.get(name);
         let estimate = parameter.or_else(|| outcome.nuisances.get(name))?;
         let rises = profile.rises.iter().copied();

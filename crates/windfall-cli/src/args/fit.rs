@@ -3,7 +3,7 @@
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
-use windfall_campaign::impacts::shard::Shard;
+use windfall_campaign::impacts::shard::{Part, Shard};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::request::RecordingRequest;
 
@@ -34,6 +34,8 @@ Examples:
       the table of results for pandas, polars, DuckDB or R, with units in its metadata
   windfall fit my-campaign --shard 3/64 --out parts/3.parquet
       the third of 64 parts, on a machine of its own; all parts in one folder are one table
+  find my-campaign/raw -newer last | windfall fit my-campaign --only - --out new.parquet
+      the recordings that another program names
   windfall fit my-campaign --watch
       while you measure: each new recording is listed by [files] names, fitted and shown
   windfall fit impact.csv --rig pendulum --inertia '0.01435 kg m^2' --arm '0.505 m' \\
@@ -57,6 +59,10 @@ pub struct FitArguments {
     /// results.sqlite is left alone
     #[arg(long, value_name = "PART/PARTS", requires = "out", conflicts_with_all = ["figures", "detail", "card", "rig", "watch", "joint", "refit"])]
     pub shard: Option<Shard>,
+    /// Fit only the impacts that a file ("-": standard input) names, an id or a recording in each
+    /// line, and write their rows to --out as they come; results.sqlite is left alone
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "out", conflicts_with_all = ["shard", "figures", "detail", "card", "rig", "watch", "joint", "refit"])]
+    pub only: Option<PathBuf>,
     /// Fit each recording that lands in DIR/raw, as soon as it stops growing, and show the mean
     /// so far, until Ctrl-C
     #[arg(long, conflicts_with_all = ["figures", "detail", "card", "rig", "out"])]
@@ -64,4 +70,12 @@ pub struct FitArguments {
     /// Rig and channels of a recording without a campaign
     #[command(flatten)]
     pub recording: Option<RecordingRequest>,
+}
+
+impl FitArguments {
+    /// The part of a campaign that alone is fitted.
+    pub fn part(&self) -> Option<Part> {
+        let listed = self.only.clone().map(Part::List);
+        self.shard.map(Part::Shard).or(listed)
+    }
 }

@@ -6,7 +6,7 @@ use crate::progress::with_bar;
 use crate::show::{csv_of_names, message, note, show, tell_failures, tell_unused, write_result};
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
-use windfall_campaign::impacts::shard::{ShardOutcome, fit_shard};
+use windfall_campaign::impacts::shard::{ShardOutcome, fit_part};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_files::error::Error;
 use windfall_files::sheet::form::Form;
@@ -49,9 +49,9 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         )?;
         return Ok(());
     }
-    if let (Some(shard), Some((out, _))) = (arguments.shard, out) {
+    if let (Some(part), Some((out, _))) = (arguments.part(), out) {
         let work = || {
-            let outcome = with_bar(|progress| fit_shard(path, request, shard, out, progress));
+            let outcome = with_bar(|progress| fit_part(path, request, &part, out, progress));
             outcome.map_err(tell_failures)
         };
         let csv = |own: &ShardOutcome| csv_of_names("file", [own.file.display()]);

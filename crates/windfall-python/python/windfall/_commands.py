@@ -237,6 +237,7 @@ def fit_campaign(
     threads: int | None = None,
     out: Path | None = None,
     shard: Value | None = None,
+    only: Path | None = None,
     rig: Literal["pendulum", "carriage"] | None = None,
     inertia: Value | None = None,
     arm: Value | None = None,
@@ -298,6 +299,8 @@ def fit_campaign(
     * `out`: Write the table of results into a file, too: .csv, .parquet or .arrow
     * `shard`: Fit this part of the impacts alone, such as 3/64, and write its rows to --out as
       they come; results.sqlite is left alone
+    * `only`: Fit only the impacts that a file ("-": standard input) names, an id or a recording
+      in each line, and write their rows to --out as they come; results.sqlite is left alone
     * `rig`: The rig that the recording comes from
     * `inertia`: Pendulum: moment of inertia about the pivot, such as "0.01435 kg m^2"
     * `arm`: Pendulum: pivot to point of contact, such as "0.505 m"
@@ -348,6 +351,7 @@ def fit_campaign(
             "--threads": threads,
             "--out": out,
             "--shard": shard,
+            "--only": only,
             "--rig": rig,
             "--inertia": inertia,
             "--arm": arm,
