@@ -3,8 +3,12 @@
 use crate::axis::{Axis, axis};
 use crate::frame::{Frame, Rectangle};
 use crate::panel::Panel;
-use crate::panel_drawing::{Labels, draw_legend, draw_within, legend_height, range};
+use crate::panel_drawing::{
+    Labels, draw_legend, draw_within, legend_height, named_lines, shown_ranges,
+};
+use crate::paper::drawing_on_paper;
 use crate::svg::{Anchor, Drawing, Ink};
+use crate::width::Width;
 use std::collections::BTreeSet;
 
 /// Room around a panel and above all of them; px.
@@ -22,20 +26,23 @@ const NOTE: f64 = 14.0;
 /// Width of a character of the names and notes, and of titles; px.
 const CHARACTER: f64 = 5.7;
 const TITLE_CHARACTER: f64 = 6.3;
+const LABEL_CHARACTER: f64 = 5.8;
 
 /// Longest name at an axis; characters.
 const LONGEST_NAME: usize = 22;
 
-/// Labels within a small panel.
-const LABELS: Labels = Labels {
-    size: 10.0,
-    character: 5.8,
-    line: 10.5,
-    ring: 3.6,
-    dots: (1.9, 1.2),
-    alike: true,
-    whole: true,
-};
+/// Labels within small panels.
+pub(crate) fn small_labels(lines: Vec<usize>) -> Labels {
+    Labels {
+        size: 10.0,
+        line: 10.5,
+        ring: 3.6,
+        dots: (1.9, 1.2),
+        alike: true,
+        whole: true,
+        lines,
+    }
+}
 
 /// What stands along an axis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -81,8 +88,22 @@ impl GridPanel {
         }
     }
 
+    /// The panel with the same range and scale on both axes.
+    #[must_use]
+    pub fn with_equal_axes(self) -> Self {
+        Self {
+            panel: self.panel.with_equal_axes(),
+            ..self
+        }
+    }
+
+    /// What it shows of each axis: the same of both where they are equal.
+    pub(crate) fn ranges(&self) -> ((f64, f64), (f64, f64)) {
+        shown_ranges(&self.panel)
+    }
+
     /// Whether no series has a point that can be drawn.
-    fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         let points = self.panel.series.iter().flat_map(|own| &own.points);
         let mut finite = points.filter(|(x, y)| x.is_finite() && y.is_finite());
         finite.next().is_none()
@@ -104,18 +125,29 @@ pub struct Grid {
     pub notes: Vec<String>,
 }
 
-/// Draws a grid, whose colours a theme names later.
+/// Draws a grid, whose colours a theme names later, at a width on paper or as large as it is.
 ///
 /// A panel without a finite point shows why it is empty. Places beyond the ends of a scale are
 /// not drawn.
-pub fn drawing_of_grid(grid: &Grid) -> Drawing {
+pub fn drawing_of_grid(grid: &Grid, paper: Option<Width>) -> Drawing {
+    let labels = &small_labels(named_lines(grid.panels.iter().map(|own| &own.panel)));
+    match paper {
+        Some(width) => {
+            let place = (0, grid.panels.len());
+            drawing_on_paper(&grid.panels, place, &grid.notes, labels, width)
+        }
+        None => plain_drawing(grid, labels),
+    }
+}
+
+fn plain_drawing(grid: &Grid, labels: &Labels) -> Drawing {
     let columns = grid.columns.clamp(1, grid.panels.len().max(1));
     let (width, height) = grid.size;
     let beside = grid.panels.iter().map(room_beside).fold(BESIDE, f64::max);
     let step = beside + width + RIGHT;
     let whole = step * columns as f64;
     let legend = |own: &GridPanel| {
-        legend_height(&with_short_labels(&own.panel, width), (0.0, width), &LABELS)
+        legend_height(&with_short_labels(&own.panel, width), (0.0, width), labels)
     };
     let rows: Vec<f64> = grid
         .panels
@@ -143,7 +175,7 @@ pub fn drawing_of_grid(grid: &Grid) -> Drawing {
             let title = (within.left, top + 14.0);
             let most = (step / TITLE_CHARACTER) as usize;
             drawing.text(title, Anchor::Start, 11.5, &cut(&own.title, most));
-            draw_panel(&mut drawing, own, within);
+            draw_panel(&mut drawing, own, within, labels);
         }
         top += above + legend + height + BELOW;
     }
@@ -164,10 +196,22 @@ fn room_beside(own: &GridPanel) -> f64 {
     40.0 + CHARACTER * longest as f64
 }
 
-fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
+fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle, labels: &Labels) {
     let empty = own.is_empty();
-    let across = axis_of(&own.across, range(&own.panel, |point| point.0), 5, 0.03);
-    let up = axis_of(&own.up, range(&own.panel, |point| point.1), 5, 0.1);
+    let (x, y) = own.ranges();
+    let across = axis_of(&own.across, x, 5, 0.03);
+    let up = axis_of(&own.up, y, 5, if own.panel.equal { 0.03 } else { 0.1 });
+    let side = match own.panel.equal {
+        true => within.width.min(within.height),
+        false => within.width,
+    };
+    let (whole, within) = (
+        within,
+        Rectangle {
+            width: side,
+            ..within
+        },
+    );
     let mut frame = Frame { within, across, up };
     if empty {
         frame.across.ticks.clear();
@@ -196,13 +240,9 @@ fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
         }
         return;
     }
-    draw_within(drawing, &inside(panel, &frame), &frame, &LABELS);
-    draw_legend(
-        drawing,
-        &with_short_labels(panel, within.width),
-        &frame,
-        &LABELS,
-    );
+    draw_within(drawing, &inside(panel, &frame), &frame, labels);
+    let legend = with_short_labels(panel, whole.width);
+    draw_legend(drawing, &legend, &whole, labels);
     for (at, text) in &own.texts {
         let (x, y) = frame.place(*at);
         drawing.text_over((x, y + 3.6), (Anchor::Middle, 10.5), text, Ink::Background);
@@ -211,7 +251,7 @@ fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
 
 /// The panel with labels of its legend that end within a width; px.
 fn with_short_labels(panel: &Panel, width: f64) -> Panel {
-    let most = ((width - 24.0) / LABELS.character) as usize;
+    let most = ((width - 24.0) / LABEL_CHARACTER) as usize;
     let mut panel = panel.clone();
     let given = panel.series.iter().map(|own| own.label.clone());
     let given: Vec<String> = given.filter(|own| !own.is_empty()).collect();
@@ -226,7 +266,7 @@ fn with_short_labels(panel: &Panel, width: f64) -> Panel {
 }
 
 /// The panel without what lies beyond its frame.
-fn inside(panel: &Panel, frame: &Frame) -> Panel {
+pub(crate) fn inside(panel: &Panel, frame: &Frame) -> Panel {
     let holds = |axis: &Axis, value: f64| {
         let room = 1e-9 * (axis.high - axis.low);
         value >= axis.low - room && value <= axis.high + room
@@ -242,7 +282,7 @@ fn inside(panel: &Panel, frame: &Frame) -> Panel {
     panel
 }
 
-fn axis_of(scale: &Scale, (low, high): (f64, f64), ticks: usize, room: f64) -> Axis {
+pub(crate) fn axis_of(scale: &Scale, (low, high): (f64, f64), ticks: usize, room: f64) -> Axis {
     match scale {
         Scale::Names(names) => Axis {
             low: -0.6,
@@ -345,7 +385,7 @@ mod tests {
             size: (200.0, 180.0),
             notes: vec!["a note".to_owned()],
         };
-        drawing_of_grid(&grid).svg(&LIGHT)
+        drawing_of_grid(&grid, None).svg(&LIGHT)
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! A small writer of SVG: what the figures of windfall are drawn with.
 
 use crate::colour_map::{Rgb, css, mixed};
+use crate::text_width::RAISED_SIZE;
 use crate::theme::{SCALE, SERIES, Theme};
+use crate::width::{LEAST_LINE, LETTERS, Width, mm_text};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -66,11 +68,50 @@ fn colour_of(mark: char, theme: &Theme) -> Option<&'static str> {
     inks.copied().nth(index)
 }
 
+/// Dashes of lines by their number.
+const PATTERNS: [&str; 7] = [
+    "",
+    "8 2.5 2 2.5",
+    "2 2.5",
+    "12 4",
+    "8 2.5 2 2.5 2 2.5",
+    "4 2 1 2",
+    "14 3 3 3",
+];
+
+/// Corners of marks by their number, over the radius of a dot of about the same area; a dot itself
+/// has none.
+const SHAPES: [&[(f64, f64)]; 7] = [
+    &[],
+    &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+    &[(0.0, -1.4), (1.25, 0.8), (-1.25, 0.8)],
+    &[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)],
+    &[(0.0, 1.4), (1.25, -0.8), (-1.25, -0.8)],
+    &[
+        (-0.45, -1.35),
+        (0.45, -1.35),
+        (0.45, -0.45),
+        (1.35, -0.45),
+        (1.35, 0.45),
+        (0.45, 0.45),
+        (0.45, 1.35),
+        (-0.45, 1.35),
+        (-0.45, 0.45),
+        (-1.35, 0.45),
+        (-1.35, -0.45),
+        (-0.45, -0.45),
+    ],
+    &[(-1.2, -1.2), (1.2, -1.2), (-1.2, 1.2), (1.2, 1.2)],
+];
+
 /// A drawing of a given size; px, y downwards.
 #[derive(Clone, Debug)]
 pub struct Drawing {
     width: f64,
     height: f64,
+    /// Whether its size on paper is given: then all letters have one size, and lines are not
+    /// thinner than a press can print.
+    paper: bool,
     body: String,
     /// Colours of balls: each has a shading of its own.
     balls: BTreeSet<Rgb>,
@@ -82,8 +123,33 @@ impl Drawing {
         Self {
             width,
             height,
+            paper: false,
             body: String::new(),
             balls: BTreeSet::new(),
+        }
+    }
+
+    /// An empty drawing that is printed at a width; of [`new`](Self::new) where none is given.
+    ///
+    /// * `plain`: width where none is given; px
+    pub fn at_width(width: Option<Width>, plain: f64, height: f64) -> Self {
+        let drawing = Self::new(width.map_or(plain, Width::px), height);
+        Self {
+            paper: width.is_some(),
+            ..drawing
+        }
+    }
+
+    /// Size of letters that are drawn with this one; px.
+    pub fn letters(&self, size: f64) -> f64 {
+        if self.paper { LETTERS } else { size }
+    }
+
+    /// Width of lines that are drawn with this one; px.
+    fn stroke(&self, width: f64) -> f64 {
+        match self.paper {
+            true => width.max((LEAST_LINE * 1e3).ceil() / 1e3),
+            false => width,
         }
     }
 
@@ -107,7 +173,18 @@ impl Drawing {
         self.line(points, r#" stroke-dasharray="5 3""#, ink, width);
     }
 
+    /// A line through points in the dashes of this number, so that lines can be told apart without
+    /// colours; 0 is a full line.
+    pub fn patterned(&mut self, points: &[(f64, f64)], pattern: usize, ink: Ink, width: f64) {
+        let dashes = match PATTERNS[pattern % PATTERNS.len()] {
+            "" => String::new(),
+            dashes => format!(r#" stroke-dasharray="{dashes}""#),
+        };
+        self.line(points, &dashes, ink, width);
+    }
+
     fn line(&mut self, points: &[(f64, f64)], dashes: &str, ink: Ink, width: f64) {
+        let width = self.stroke(width);
         let look = format!(
             r#"fill="none"{dashes} stroke="{}" stroke-width="{width}" stroke-linejoin="round""#,
             ink.mark()
@@ -146,8 +223,23 @@ impl Drawing {
         );
     }
 
+    /// A filled mark of this shape, as large as a [`dot`](Self::dot): series can be told apart
+    /// without colours. 0 is a dot.
+    pub fn mark(&mut self, at: (f64, f64), radius: f64, shape: usize, ink: Ink) {
+        let corners = match SHAPES[shape % SHAPES.len()] {
+            [] => return self.dot(at, radius, ink),
+            corners => corners.iter(),
+        };
+        let corners: Vec<(f64, f64)> = corners
+            .map(|(x, y)| (at.0 + radius * x, at.1 + radius * y))
+            .collect();
+        let look = format!(r#"fill="{}""#, ink.mark());
+        self.through("polygon", &corners, 2, &look);
+    }
+
     /// A text; what XML would misread is escaped.
     pub fn text(&mut self, at: (f64, f64), anchor: Anchor, size: f64, text: &str) {
+        let size = self.letters(size);
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -164,10 +256,19 @@ impl Drawing {
 
     /// A text turned to read upwards, about its middle.
     pub fn turned_text(&mut self, at: (f64, f64), size: f64, text: &str) {
-        let (x, y) = at;
+        self.upwards(at, "middle", size, text);
+    }
+
+    /// A text turned to read upwards, which ends at its place.
+    pub fn steep_text(&mut self, at: (f64, f64), size: f64, text: &str) {
+        self.upwards(at, "end", size, text);
+    }
+
+    fn upwards(&mut self, (x, y): (f64, f64), anchor: &str, size: f64, text: &str) {
+        let size = self.letters(size);
         let _ = writeln!(
             self.body,
-            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="middle" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
+            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
             set_text(text, size)
         );
     }
@@ -205,9 +306,10 @@ impl Drawing {
     /// A filled shape with corners at points, within a thin line.
     pub fn facet(&mut self, points: &[(f64, f64)], fill: Ink, edge: Ink) {
         let look = format!(
-            r#"fill="{}" stroke="{}" stroke-width="0.5" stroke-linejoin="round""#,
+            r#"fill="{}" stroke="{}" stroke-width="{}" stroke-linejoin="round""#,
             fill.mark(),
-            edge.mark()
+            edge.mark(),
+            self.stroke(0.5)
         );
         self.through("polygon", points, 1, &look);
     }
@@ -297,12 +399,17 @@ impl Drawing {
     /// see it; "" for a picture that is described elsewhere.
     pub fn element(&self, theme: &Theme, label: &str) -> String {
         let (width, height) = (self.width, self.height);
+        let size = |length: f64| match self.paper {
+            true => mm_text(length),
+            false => length.to_string(),
+        };
+        let (across, down) = (size(width), size(height));
         let described = match label {
             "" => String::new(),
             label => format!(r#" role="img" aria-label="{}""#, escaped(label)),
         };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}\" height=\"{down}\" \
              viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
              <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
             theme.text, theme.background
@@ -379,7 +486,7 @@ const RAISED: [(char, char); 11] = [
 
 /// Text in parts, each with whether it is raised: raised characters, and numbers
 /// behind a "^".
-fn parts(text: &str) -> Vec<(String, bool)> {
+pub(crate) fn parts(text: &str) -> Vec<(String, bool)> {
     let mut parts: Vec<(String, bool)> = Vec::new();
     let mut push = |c: char, raised: bool| match parts.last_mut() {
         Some((part, of)) if *of == raised => part.push(c),
@@ -422,7 +529,7 @@ fn set_text(text: &str, size: f64) -> String {
                 whole,
                 r#"<tspan dy="{:.2}" font-size="{:.2}">{part}</tspan>"#,
                 -rise,
-                0.72 * size
+                RAISED_SIZE * size
             ),
             // Back to the line.
             (false, true) => write!(whole, r#"<tspan dy="{rise:.2}">{part}</tspan>"#),

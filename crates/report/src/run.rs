@@ -4,6 +4,7 @@ use crate::any_text::csv_of_any;
 use crate::fit_any::measurement_of;
 use crate::impacts::sections_of_campaign;
 use crate::items::sections_of_items;
+use crate::listed::{LISTED, left_out};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -14,9 +15,10 @@ use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::digests::{Digests, run_origin};
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::model::{Campaign, FilePlan};
-use windfall_draw::files::{FigureFolder, NamedFigure, write_figures};
+use windfall_draw::files::{FigureFolder, FigureFormat, NamedFigure, write_figures};
 use windfall_draw::page::{CaptionedTable, Report, Section, html_of_report};
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
@@ -40,6 +42,10 @@ pub struct ReportRequest {
     pub out: Option<PathBuf>,
     /// Colours of the files of figures; the page has both.
     pub theme: FigureTheme,
+    /// Width of the files of figures on paper; as wide as a screen shows them where it is left out.
+    pub width: Option<Width>,
+    /// Formats of the files of figures; SVG and PNG where it is empty.
+    pub formats: Vec<FigureFormat>,
 }
 
 /// What was written.
@@ -198,6 +204,8 @@ fn write(
     let folder = FigureFolder {
         directory: out.join(FIGURES),
         theme: request.theme,
+        width: request.width,
+        formats: request.formats.clone(),
     };
     let mut files = write_figures(&folder, &drawn)?;
     let json = serde_json::to_string_pretty(outcome)
@@ -245,17 +253,17 @@ fn origin(inputs: &[(String, String)], options: &str) -> Section {
             rows: rows_of(inputs).collect(),
         },
     };
+    let mut words = vec![format!(
+        "windfall {VERSION} read {} files. The same files, options and version give the same \
+         numbers to the last bit, on any number of threads. Options, campaign.toml word for word \
+         among them, are below.",
+        inputs.len()
+    )];
+    words.extend(left_out(inputs.len(), "inputs.csv"));
     Section {
         listing: Some(readable(options)),
-        tables: vec![table],
-        ..Section::of_words(
-            "Origin",
-            vec![format!(
-                "windfall {VERSION}. The same files, options and version give the same numbers to \
-                 the last bit, on any number of threads. Options, campaign.toml word for word \
-                 among them:"
-            )],
-        )
+        tables: (inputs.len() <= LISTED).then_some(table).into_iter().collect(),
+        ..Section::of_words("Origin", words)
     }
 }
 

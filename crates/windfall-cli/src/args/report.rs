@@ -3,7 +3,9 @@
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_draw::files::FigureFormat;
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 
 /// `windfall report`
 #[derive(Debug, Args)]
@@ -28,6 +30,12 @@ pub struct ReportArguments {
     /// Colours of the files of figures; the page follows the reader's setting
     #[arg(long, value_enum, default_value_t = FigureTheme::Light)]
     pub theme: FigureTheme,
+    /// Width of the files of figures in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[arg(long, value_name = "LENGTH")]
+    pub width: Option<Width>,
+    /// Formats of the files of figures in place of SVG and PNG
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
+    pub figure_format: Vec<FigureFormat>,
     /// Law to fit in place of those of the campaign; may be repeated
     #[arg(long = "law", value_name = "LAW")]
     pub laws: Vec<String>,
