@@ -70,7 +70,17 @@ pub struct FigureFolder {
     )]
     pub width: Option<Width>,
     /// Formats of the figures in place of SVG and PNG; the data are always CSV
-    #[cfg_attr(feature = "clap", arg(id = "figure_format", long = "figure-format", value_enum, value_delimiter = ',', value_name = "FORMAT", requires = "figures"))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            id = "figure_format",
+            long = "figure-format",
+            value_enum,
+            value_delimiter = ',',
+            value_name = "FORMAT",
+            requires = "figures"
+        )
+    )]
     pub formats: Vec<FigureFormat>,
 }
 
@@ -175,7 +185,8 @@ pub fn write_paintings(
     paintings: &[Painting],
 ) -> Result<Vec<PathBuf>, Error> {
     check_paths(folder, paintings.iter().map(|own| own.name.as_str()))?;
-    let write = |p: &Painting| write_drawing(folder, &p.name, &p.picture.drawing(folder.width), &p.csv);
+    let write =
+        |p: &Painting| write_drawing(folder, &p.name, &p.picture.drawing(folder.width), &p.csv);
     let written: Result<Vec<Vec<PathBuf>>, Error> = paintings.par_iter().map(write).collect();
     Ok(written?.into_iter().flatten().collect())
 }

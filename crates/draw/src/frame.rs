@@ -2,11 +2,14 @@
 
 use crate::axis::{Axis, unit_label};
 use crate::svg::{Anchor, Drawing, Ink};
-use crate::text_width::lines_of;
+use crate::text_width::{lines_of, text_width};
 
 /// Sizes of the letters at ticks and of titles; px.
 const TICK: f64 = 10.5;
 const TITLE: f64 = 11.5;
+
+/// Least distance of labels at ticks; px.
+const APART: f64 = 2.0;
 
 /// Distance of the lines of a title, and how far it may reach beyond its axis; px.
 const LINE: f64 = 13.0;
@@ -96,7 +99,10 @@ impl Frame {
         let title = format!("{x}{}", unit_label(x_unit, self.across.power));
         let middle = left + 0.5 * within.width;
         let size = drawing.letters(TITLE);
-        for (line, text) in lines_of(&title, size, within.width + BEYOND).iter().enumerate() {
+        for (line, text) in lines_of(&title, size, within.width + BEYOND)
+            .iter()
+            .enumerate()
+        {
             let at = (middle, bottom + 36.0 + LINE * line as f64);
             drawing.text(at, Anchor::Middle, TITLE, text);
         }
@@ -113,10 +119,16 @@ impl Frame {
     pub fn draw_ticks(&self, drawing: &mut Drawing) {
         let within = &self.within;
         let (left, bottom) = (within.left, within.bottom());
+        // A label that the one before it leaves no room for is left out.
+        let mut taken = f64::NEG_INFINITY;
         for (tick, label) in self.across.ticks.iter().zip(&self.across.labels) {
             let (x, _) = self.place((*tick, self.up.low));
             drawing.rule((x, bottom), (x, bottom + 4.0), Ink::Frame);
-            drawing.text((x, bottom + 16.0), Anchor::Middle, TICK, label);
+            let half = 0.5 * text_width(label, drawing.letters(TICK));
+            if x - half > taken {
+                drawing.text((x, bottom + 16.0), Anchor::Middle, TICK, label);
+                taken = x + half + APART;
+            }
         }
         for (tick, label) in self.up.ticks.iter().zip(&self.up.labels) {
             let (_, y) = self.place((self.across.low, *tick));

@@ -4,9 +4,9 @@ use crate::axis::{Axis, axis};
 use crate::frame::{Frame, Rectangle};
 use crate::panel::Panel;
 use crate::panel_drawing::{
-    Labels, draw_legend, draw_within, legend_height, named_lines, shown_ranges,
+    Labels, MOST_POINTS, draw_legend, draw_within, legend_height, named_lines, shown_ranges,
 };
-use crate::paper::drawing_on_paper;
+use crate::paper::{Part, drawing_on_paper};
 use crate::svg::{Anchor, Drawing, Ink};
 use crate::width::Width;
 use std::collections::BTreeSet;
@@ -40,6 +40,7 @@ pub(crate) fn small_labels(lines: Vec<usize>) -> Labels {
         dots: (1.9, 1.2),
         alike: true,
         whole: true,
+        most: MOST_POINTS,
         lines,
     }
 }
@@ -133,8 +134,8 @@ pub fn drawing_of_grid(grid: &Grid, paper: Option<Width>) -> Drawing {
     let labels = &small_labels(named_lines(grid.panels.iter().map(|own| &own.panel)));
     match paper {
         Some(width) => {
-            let place = (0, grid.panels.len());
-            drawing_on_paper(&grid.panels, place, &grid.notes, labels, width)
+            let part = Part::all(grid.panels.len());
+            drawing_on_paper(&grid.panels, part, &grid.notes, labels, width)
         }
         None => plain_drawing(grid, labels),
     }

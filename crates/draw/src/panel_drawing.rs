@@ -15,7 +15,7 @@ const LEGEND_LINE: f64 = 15.0;
 const FEW_POINTS: usize = 150;
 
 /// More points than this are thinned to what the eye can tell.
-const MOST_POINTS: usize = 4000;
+pub(crate) const MOST_POINTS: usize = 4000;
 
 /// Sizes of the labels within a panel; px.
 pub(crate) struct Labels {
@@ -31,6 +31,8 @@ pub(crate) struct Labels {
     pub alike: bool,
     /// Whether all points are drawn but those of lines: the caller has thinned them.
     pub whole: bool,
+    /// Most points of a series, where they are thinned here.
+    pub most: usize,
     /// Colours of the lines that a legend names, each once: the first is a full line, the others
     /// have dashes of their own.
     pub lines: Vec<usize>,
@@ -67,7 +69,9 @@ pub(crate) fn shared_legend(panels: &[&Panel]) -> Panel {
     for entry in of_panels.iter().flatten() {
         let again = of_panels.iter().filter(|own| own.contains(entry)).count() > 1;
         let (label, style, colour) = entry;
-        let new = !shared.iter().any(|own| own.label == *label && own.style == *style);
+        let new = !shared
+            .iter()
+            .any(|own| own.label == *label && own.style == *style);
         if again && new {
             shared.push(Series::new(label, *style, Vec::new()).coloured(*colour));
         }
@@ -167,7 +171,7 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
         let series = panel.series.iter().enumerate();
         for (index, series) in series.filter(|(_, s)| layer(s) == drawn) {
             let index = series.colour.unwrap_or(index);
-            let points: Vec<(f64, f64)> = thinned(series, labels.whole)
+            let points: Vec<(f64, f64)> = thinned(series, labels.whole, labels.most)
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
                 .map(|point| frame.place(point))
                 .collect();
@@ -201,7 +205,7 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
 
 /// Named places. Where labels would cover each other, the first is shown; the data have all.
 fn draw_marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labels) {
-    let (left, right) = (frame.within.left, frame.within.right());
+    let (left, right, top) = (frame.within.left, frame.within.right(), frame.within.top);
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
     for mark in &panel.marks {
         let at = frame.place(mark.at);
@@ -212,6 +216,7 @@ fn draw_marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labe
                 Side::AboveLeft => (at.0 - 9.0, at.1 - 7.0, Anchor::End),
                 Side::BelowRight => (at.0 + 9.0, at.1 + 13.0, Anchor::Start),
             };
+            let y = y.clamp(top + 0.9 * labels.size, frame.within.bottom() - 3.0);
             // A label that would leave the panel moves to the other side.
             let (x, anchor) = match anchor {
                 Anchor::End if x - length < left => (at.0 + 9.0, Anchor::Start),
@@ -337,9 +342,13 @@ fn draw_series(
 
 /// Every point, or so many that the eye sees no difference: of a line the lowest
 /// and the highest of each stretch, so that no peak is lost; pairs stay together.
-fn thinned(series: &Series, whole: bool) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
+fn thinned(series: &Series, whole: bool, most: usize) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
     let points = &series.points;
-    let step = points.len().div_ceil(MOST_POINTS).max(1);
+    let most = match series.style {
+        Style::Dots => most,
+        _ => MOST_POINTS,
+    };
+    let step = points.len().div_ceil(most).max(1);
     match series.style {
         Style::Line if step > 1 => Box::new(points.chunks(2 * step).flat_map(extremes)),
         _ if whole || step == 1 => Box::new(points.iter().copied()),
@@ -379,7 +388,7 @@ mod tests {
             colour: None,
             points,
         };
-        let drawn: Vec<(f64, f64)> = thinned(&series, false).collect();
+        let drawn: Vec<(f64, f64)> = thinned(&series, false, MOST_POINTS).collect();
         assert!(drawn.len() <= MOST_POINTS && drawn.contains(&(12_345.0, 9.0)));
         assert!(drawn.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         // Of bars whole ones are left out, and none where the caller has thinned them.
@@ -387,9 +396,9 @@ mod tests {
             style: Style::Bars,
             ..series
         };
-        let drawn: Vec<(f64, f64)> = thinned(&bars, false).collect();
+        let drawn: Vec<(f64, f64)> = thinned(&bars, false, MOST_POINTS).collect();
         assert!(drawn.len() <= MOST_POINTS);
         assert!(drawn.chunks(2).all(|own| own[1].0 == own[0].0 + 1.0));
-        assert_eq!(thinned(&bars, true).count(), 20_000);
+        assert_eq!(thinned(&bars, true, MOST_POINTS).count(), 20_000);
     }
 }

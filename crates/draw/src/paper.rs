@@ -26,15 +26,42 @@ const LOW: f64 = 0.66;
 const LEAST: f64 = 110.0;
 const MOST: f64 = 290.0;
 
+/// How much higher panels are whose axes are equal; 1.
+const EQUAL: f64 = 1.35;
+
 /// Height of a page, and of the lowest panel; px.
 const PAGE: f64 = 880.0;
-const LOWEST: f64 = 70.0;
+const LOWEST: f64 = 96.0;
+
+/// Most dots of a series: more cannot be told apart on paper, and make files large.
+const MOST_DOTS: usize = 1500;
 
 /// Height of a name at a vertical axis; px.
 const NAME: f64 = 14.0;
 
 /// Longest name at an axis; px.
 const LONGEST_NAME: f64 = 110.0;
+
+/// Which part of a figure is drawn.
+pub(crate) struct Part {
+    /// Panels of the figure that come before it.
+    pub first: usize,
+    /// Panels of the whole figure.
+    pub whole: usize,
+    /// Most height of axes, but where names need more; px.
+    pub highest: f64,
+}
+
+impl Part {
+    /// A figure of so many panels.
+    pub fn all(whole: usize) -> Self {
+        Self {
+            first: 0,
+            whole,
+            highest: MOST,
+        }
+    }
+}
 
 /// A panel with what is measured of it before it is drawn.
 struct Cell<'a> {
@@ -54,13 +81,11 @@ struct Cell<'a> {
 
 /// Draws panels in a grid that fits a width, no higher than a page as far as they can be lower.
 ///
-/// * `first`, `whole`: how many panels of the figure come before these, and how many it has
-///
 /// Panels of a figure of several are lettered. What legends of several panels say is said once,
 /// above all of them.
 pub(crate) fn drawing_on_paper(
     panels: &[GridPanel],
-    (first, whole): (usize, usize),
+    part: Part,
     notes: &[String],
     labels: &Labels,
     width: Width,
@@ -68,6 +93,7 @@ pub(crate) fn drawing_on_paper(
     let labels = &Labels {
         size: LETTERS,
         line: LINE,
+        most: MOST_DOTS,
         lines: labels.lines.clone(),
         ..*labels
     };
@@ -76,23 +102,30 @@ pub(crate) fn drawing_on_paper(
     let cell = (across - GAP * (columns - 1) as f64) / columns as f64;
     let shown: Vec<&Panel> = panels.iter().map(|own| &own.panel).collect();
     let shared = shared_legend(&shown);
-    let shared = own_legend(&shared, &Panel::new(("", ""), ("", ""), Vec::new()), LETTERS, across);
-    let left = panels.iter().map(room_beside).fold(0.0, f64::max);
+    let shared = own_legend(
+        &shared,
+        &Panel::new(("", ""), ("", ""), Vec::new()),
+        LETTERS,
+        across,
+    );
     let laid = |highest: f64| {
+        let height = (LOW * 0.75 * cell).max(LEAST).min(highest);
+        let rooms = panels.iter().map(|own| room_beside(own, height));
+        let left = rooms.fold(0.0, f64::max);
         let cells = panels.iter().enumerate().map(|(place, own)| {
-            let letter = (whole > 1).then(|| letter_of(first + place));
+            let letter = (part.whole > 1).then(|| letter_of(part.first + place));
             Cell::of(own, letter, &shared, (cell, left, highest))
         });
         let cells: Vec<Cell> = cells.collect();
         let rows = cells.chunks(columns).map(|row| Row::of(row, cell, labels));
         let rows: Vec<Row> = rows.collect();
-        (cells, rows)
+        (cells, rows, left)
     };
-    let (mut cells, mut rows) = laid(MOST);
+    let (mut cells, mut rows, mut left) = laid(part.highest);
     let over = rows.iter().map(Row::height).sum::<f64>() - PAGE;
     if over > 0.0 {
         let plots: f64 = rows.iter().map(|own| own.plot).sum();
-        (cells, rows) = laid(((plots - over) / rows.len() as f64).max(LOWEST));
+        (cells, rows, left) = laid(((plots - over) / rows.len() as f64).max(LOWEST));
     }
 
     let ends = (4.0, across);
@@ -100,7 +133,9 @@ pub(crate) fn drawing_on_paper(
         true => 4.0,
         false => legend_height(&shared, ends, labels),
     };
-    let notes = notes.iter().flat_map(|own| lines_of(own, LETTERS, across - 8.0));
+    let notes = notes
+        .iter()
+        .flat_map(|own| lines_of(own, LETTERS, across - 8.0));
     let notes: Vec<String> = notes.collect();
     let panels: f64 = rows.iter().map(Row::height).sum();
     let total = top + panels + LINE * notes.len() as f64 + 4.0;
@@ -147,11 +182,26 @@ fn letter_of(place: usize) -> String {
     }
 }
 
-/// Room beside a panel: labels of the vertical axis and a line of its title; px.
-fn room_beside(own: &GridPanel) -> f64 {
-    let axis = vertical(own, MOST);
+/// Room beside a panel of this height: labels of the vertical axis and its title; px.
+fn room_beside(own: &GridPanel, height: f64) -> f64 {
+    let axis = vertical(own, height);
     let widths = axis.labels.iter().map(|label| text_width(label, LETTERS));
-    10.0 + widths.fold(0.0, f64::max) + LINE + 8.0
+    let title = upright_title(own, &axis, height);
+    10.0 + widths.fold(0.0, f64::max) + LINE * title.len() as f64 + 8.0
+}
+
+/// Lines of the title of a vertical axis of this height; px.
+fn upright_title(own: &GridPanel, axis: &Axis, height: f64) -> Vec<String> {
+    let unit = unit_label(&own.panel.y_unit, axis.power);
+    let title = format!("{}{unit}", own.panel.y);
+    match title.as_str() {
+        "" => Vec::new(),
+        title => {
+            let mut lines = lines_of(title, LETTERS, height + 8.0);
+            lines.truncate(3);
+            lines
+        }
+    }
 }
 
 /// The vertical axis of a panel of this height; px.
@@ -227,7 +277,7 @@ impl<'a> Cell<'a> {
             _ => (LOW * width).max(LEAST).min(highest),
         };
         let size = match panel.equal {
-            true => [width.min(highest); 2].into(),
+            true => [width.min(EQUAL * highest); 2].into(),
             false => (width, height),
         };
         let (mut across, up) = (horizontal(own, size.0), vertical(own, size.1));
@@ -238,7 +288,10 @@ impl<'a> Cell<'a> {
                 let widths = names.iter().map(|name| text_width(name, LETTERS));
                 widths.fold(0.0, f64::max)
             };
-            across.labels = names.iter().map(|own| cut_to(own, LETTERS, LONGEST_NAME)).collect();
+            across.labels = names
+                .iter()
+                .map(|own| cut_to(own, LETTERS, LONGEST_NAME))
+                .collect();
             steep = (widest(&across.labels) > room - 4.0).then(|| widest(&across.labels));
         }
         let words = [letter.unwrap_or_default(), own.title.clone()].join(" ");
@@ -247,11 +300,10 @@ impl<'a> Cell<'a> {
             text => lines_of(text, LETTERS, width),
         };
         let x_title = format!("{}{}", panel.x, unit_label(&panel.x_unit, across.power));
-        let y_title = format!("{}{}", panel.y, unit_label(&panel.y_unit, up.power));
         Self {
             title: lines(&words, cell - 4.0),
             x_title: lines(&x_title, size.0 + RIGHT + 0.5 * left),
-            y_title: vec![cut_to(&y_title, LETTERS, size.1 + 40.0)],
+            y_title: upright_title(own, &up, size.1),
             legend: own_legend(panel, shared, LETTERS, cell - 4.0),
             own,
             across,
@@ -308,7 +360,12 @@ impl<'a> Cell<'a> {
         draw_legend(drawing, &self.legend, &across, labels);
         for (at, text) in &self.own.texts {
             let (x, y) = frame.place(*at);
-            drawing.text_over((x, y + 3.6), (Anchor::Middle, LETTERS), text, Ink::Background);
+            drawing.text_over(
+                (x, y + 3.6),
+                (Anchor::Middle, LETTERS),
+                text,
+                Ink::Background,
+            );
         }
     }
 
@@ -333,13 +390,17 @@ impl<'a> Cell<'a> {
             // A title that is wider than its axis stays within the cell.
             let half = 0.5 * text_width(text, LETTERS);
             let at = middle.min(within.right() + RIGHT - half);
-            drawing.text((at, first + LINE * line as f64), Anchor::Middle, LETTERS, text);
+            drawing.text(
+                (at, first + LINE * line as f64),
+                Anchor::Middle,
+                LETTERS,
+                text,
+            );
         }
-        for text in &self.y_title {
-            let half = 0.5 * text_width(text, LETTERS);
-            let lowest = within.bottom() + self.below() - half;
-            let at = (within.top + 0.5 * within.height).min(lowest);
-            drawing.turned_text((within.left - left + LINE, at), LETTERS, text);
+        let middle = within.top + 0.5 * within.height;
+        for (line, text) in self.y_title.iter().enumerate() {
+            let x = within.left - left + LINE * (line + 1) as f64;
+            drawing.turned_text((x, middle), LETTERS, text);
         }
     }
 
@@ -350,7 +411,10 @@ impl<'a> Cell<'a> {
         };
         let middle = within.left + 0.5 * within.width;
         let top = within.top + 0.3 * within.height;
-        for (line, text) in lines_of(why, LETTERS, 0.9 * within.width).iter().enumerate() {
+        for (line, text) in lines_of(why, LETTERS, 0.9 * within.width)
+            .iter()
+            .enumerate()
+        {
             let at = (middle, top + LINE * line as f64);
             drawing.text(at, Anchor::Middle, LETTERS, text);
         }

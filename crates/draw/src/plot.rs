@@ -13,12 +13,7 @@ use windfall_files::write_file::{check_outputs, write_whole};
 ///
 /// # Errors
 /// The name has another ending; one of the two may not be written, or cannot.
-pub fn write_plot(
-    option: &str,
-    path: &Path,
-    svg: &str,
-    csv: &str,
-) -> Result<[PathBuf; 2], Error> {
+pub fn write_plot(option: &str, path: &Path, svg: &str, csv: &str) -> Result<[PathBuf; 2], Error> {
     let unusable = |problem: String| unusable(format!("{option} {}", path.display()), problem);
     let formats = [FigureFormat::Svg, FigureFormat::Png, FigureFormat::Pdf];
     let ending = path.extension().and_then(|extension| extension.to_str());

@@ -112,6 +112,8 @@ pub struct Drawing {
     /// Whether its size on paper is given: then all letters have one size, and lines are not
     /// thinner than a press can print.
     paper: bool,
+    /// Part at the top that is not shown: that of a title which is left out; px.
+    above: f64,
     body: String,
     /// Colours of balls: each has a shading of its own.
     balls: BTreeSet<Rgb>,
@@ -124,6 +126,7 @@ impl Drawing {
             width,
             height,
             paper: false,
+            above: 0.0,
             body: String::new(),
             balls: BTreeSet::new(),
         }
@@ -137,6 +140,17 @@ impl Drawing {
         Self {
             paper: width.is_some(),
             ..drawing
+        }
+    }
+
+    /// Draws the title of a figure at its top. On paper there is none, as the caption says it, and
+    /// its room is left out.
+    ///
+    /// * `room`: how far down the title reaches; px
+    pub fn title(&mut self, left: f64, room: f64, title: &str) {
+        match self.paper {
+            true => self.above = room,
+            false => self.text((left, 22.0), Anchor::Start, 13.0, title),
         }
     }
 
@@ -398,10 +412,14 @@ impl Drawing {
     /// The whole as an element of a page, described by `label` for those who do not
     /// see it; "" for a picture that is described elsewhere.
     pub fn element(&self, theme: &Theme, label: &str) -> String {
-        let (width, height) = (self.width, self.height);
+        let (width, height, above) = (self.width, self.height - self.above, self.above);
         let size = |length: f64| match self.paper {
             true => mm_text(length),
             false => length.to_string(),
+        };
+        let at = match above {
+            0.0 => String::new(),
+            above => format!(r#" y="{above}""#),
         };
         let (across, down) = (size(width), size(height));
         let described = match label {
@@ -410,8 +428,8 @@ impl Drawing {
         };
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}\" height=\"{down}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+             viewBox=\"0 {above} {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
+             <rect{at} width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
             theme.text, theme.background
         );
         for colour in &self.balls {

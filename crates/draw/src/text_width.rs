@@ -100,6 +100,9 @@ mod tests {
         let raised = text_width("m²", 2048.0);
         assert!((raised - 1706.0 - RAISED_SIZE * 1139.0).abs() < 1e-9);
         assert_eq!(cut_to("mmmm", 2048.0, 1706.0 + 2048.0), "m…");
-        assert_eq!(lines_of("mm mm 5 %", 2048.0, 4200.0), ["mm", "mm", "5\u{a0}%"]);
+        assert_eq!(
+            lines_of("mm mm 5 %", 2048.0, 4200.0),
+            ["mm", "mm", "5\u{a0}%"]
+        );
     }
 }

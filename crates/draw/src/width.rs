@@ -33,7 +33,9 @@ pub struct Width {
 
 impl Width {
     /// The text width of a page, as two columns of a journal have it: 174 mm.
-    pub const PAGE: Self = Self { micrometres: 174_000 };
+    pub const PAGE: Self = Self {
+        micrometres: 174_000,
+    };
 
     /// In mm.
     pub fn mm(self) -> f64 {

@@ -2,12 +2,12 @@
 
 use crate::axis::axis;
 use crate::frame::{Frame, Rectangle};
-pub use crate::panel::{Mark, Panel, Series, Side, Style};
 use crate::grid::GridPanel;
+pub use crate::panel::{Mark, Panel, Series, Side, Style};
 use crate::panel_drawing::{
-    Labels, draw_legend, draw_within, legend_height, named_lines, shown_ranges,
+    Labels, MOST_POINTS, draw_legend, draw_within, legend_height, named_lines, shown_ranges,
 };
-use crate::paper::drawing_on_paper;
+use crate::paper::{Part, drawing_on_paper};
 use crate::svg::{Anchor, Drawing};
 use crate::theme::Theme;
 use crate::width::Width;
@@ -31,6 +31,7 @@ fn labels_of(figure: &Figure) -> Labels {
         dots: (2.3, 1.5),
         alike: false,
         whole: false,
+        most: MOST_POINTS,
         lines: named_lines(figure.panels.iter()),
     }
 }
@@ -57,6 +58,9 @@ pub fn svg_of_figure(figure: &Figure, theme: &Theme) -> String {
     drawing_of_figure(figure, None).svg(theme)
 }
 
+/// Height of panels in a page, of which two rows and a caption fill half of a sheet; px.
+const LOW: f64 = 122.0;
+
 /// Panels of a page's figure that stay together; more are parts between which a page may end.
 const TOGETHER: usize = 4;
 
@@ -66,8 +70,12 @@ pub fn elements_of_figure(figure: &Figure, theme: &Theme, width: Width) -> Vec<S
     let labels = &labels_of(figure);
     let panels = panels_of(figure);
     let part = |(place, own): (usize, &[GridPanel])| {
-        let place = (place * TOGETHER, panels.len());
-        drawing_on_paper(own, place, &[], labels, width).element(theme, &figure.title)
+        let part = Part {
+            first: place * TOGETHER,
+            whole: panels.len(),
+            highest: if panels.len() > 1 { LOW } else { HEIGHT },
+        };
+        drawing_on_paper(own, part, &[], labels, width).element(theme, &figure.title)
     };
     panels.chunks(TOGETHER).enumerate().map(part).collect()
 }
@@ -83,7 +91,7 @@ pub fn drawing_of_figure(figure: &Figure, paper: Option<Width>) -> Drawing {
     let labels = &labels_of(figure);
     if let Some(width) = paper {
         let panels = panels_of(figure);
-        return drawing_on_paper(&panels, (0, panels.len()), &[], labels, width);
+        return drawing_on_paper(&panels, Part::all(panels.len()), &[], labels, width);
     }
     let legend = |panel: &Panel| legend_height(panel, (LEFT, WIDTH - RIGHT), labels);
     let rows: Vec<f64> = figure.panels.iter().map(legend).collect();

@@ -255,31 +255,73 @@ fn origin(inputs: &[(String, String)], options: &str) -> Section {
     };
     let mut words = vec![format!(
         "windfall {VERSION} read {} files. The same files, options and version give the same \
-         numbers to the last bit, on any number of threads. Options, campaign.toml word for word \
-         among them, are below.",
+         numbers to the last bit, on any number of threads. campaign.toml, word for word, and all \
+         options are below.",
         inputs.len()
     )];
     words.extend(left_out(inputs.len(), "inputs.csv"));
+    let (campaign, settings) = in_words(options);
+    let settings = CaptionedTable {
+        caption: "Options of this run; what is not set is left out".to_owned(),
+        cells: Cells {
+            header: ["option", "value"].map(str::to_owned).to_vec(),
+            rows: settings,
+        },
+    };
+    let mut tables = vec![settings];
+    tables.extend((inputs.len() <= LISTED).then_some(table));
+    tables.retain(|own| !own.cells.rows.is_empty());
     Section {
-        listing: Some(readable(options)),
-        tables: (inputs.len() <= LISTED).then_some(table).into_iter().collect(),
+        listing: (!campaign.is_empty()).then_some(campaign),
+        tables,
         ..Section::of_words("Origin", words)
     }
 }
 
-/// JSON with texts of several lines written as such.
-fn readable(options: &str) -> String {
-    let Ok(serde_json::Value::Object(map)) = serde_json::from_str(options) else {
-        return options.to_owned();
+/// Options, which are JSON: texts of several lines word for word, and the others as rows of words
+/// and values.
+fn in_words(options: &str) -> (String, Vec<Vec<String>>) {
+    let Ok(Value::Object(map)) = serde_json::from_str(options) else {
+        return (options.to_owned(), Vec::new());
     };
-    let text = |value: &serde_json::Value| match value {
-        serde_json::Value::String(text) => text.clone(),
+    let (mut texts, mut rows) = (Vec::new(), Vec::new());
+    for (key, value) in &map {
+        match value {
+            Value::String(text) if text.contains('\n') => texts.push(text.clone()),
+            value => add_rows(&key.replace('_', " "), value, &mut rows),
+        }
+    }
+    (texts.join("\n"), rows)
+}
+
+/// Adds an option by its words, or what it consists of.
+fn add_rows(words: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
+    let plain = |value: &Value| match value {
+        Value::String(text) => text.replace('_', " "),
+        Value::Bool(true) => "yes".to_owned(),
+        Value::Bool(false) => "no".to_owned(),
         other => other.to_string(),
     };
-    let parts = map
-        .iter()
-        .map(|(key, value)| format!("{key}: {}", text(value)));
-    parts.collect::<Vec<_>>().join("\n")
+    let own = match value {
+        Value::Null => return,
+        Value::Object(map) => {
+            for (key, value) in map {
+                add_rows(&format!("{words}, {}", key.replace('_', " ")), value, rows);
+            }
+            return;
+        }
+        Value::Array(all) if all.iter().any(Value::is_object) => {
+            for (place, value) in all.iter().enumerate() {
+                add_rows(&format!("{words} {}", place + 1), value, rows);
+            }
+            return;
+        }
+        Value::Array(all) => all.iter().map(plain).collect::<Vec<_>>().join(", "),
+        other => plain(other),
+    };
+    if !own.is_empty() {
+        rows.push(vec![words.to_owned(), own]);
+    }
 }
 
 fn citation() -> Section {

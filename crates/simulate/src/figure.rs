@@ -52,7 +52,7 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
     let path = &motion.trajectory;
     let times = path.times.iter().map(|time| 1e3 * time);
     let over_time = times.zip(path.force.clone()).collect();
-    let force = ("contact force", "N");
+    let force = ("contact force F", "N");
     let loops = vec![
         Series::new("loading", Style::Line, loading).coloured(0),
         Series::new("unloading", Style::Line, unloading).coloured(1),
@@ -62,8 +62,8 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
     Figure::new(
         format!("{law}: {mass} kg at {velocity} m/s"),
         vec![
-            Panel::new(("displacement", "mm"), force, loops),
-            Panel::new(("time from first touch", "ms"), force, course),
+            Panel::new(("displacement x", "mm"), force, loops),
+            Panel::new(("time t from first touch", "ms"), force, course),
         ],
     )
 }
@@ -114,7 +114,9 @@ mod tests {
         let table = folder.path().join("curve.csv");
         std::fs::write(&table, "displacement_m,force_N\n0,0\n").unwrap();
         let law = event("hertz(k=753599)");
-        let refused = write_impact_figure(&path, &law, None).unwrap_err().to_string();
+        let refused = write_impact_figure(&path, &law, None)
+            .unwrap_err()
+            .to_string();
         assert!(
             refused.contains("curve.csv: this file was not written by windfall"),
             "{refused}"

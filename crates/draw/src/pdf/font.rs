@@ -31,7 +31,9 @@ impl Glyphs {
     /// The number of a glyph in the part of the font.
     pub fn number(&mut self, glyph: u16, letters: &str) -> u16 {
         let number = self.numbers.remap(glyph);
-        self.letters.entry(number).or_insert_with(|| letters.to_owned());
+        self.letters
+            .entry(number)
+            .or_insert_with(|| letters.to_owned());
         number
     }
 
@@ -87,8 +89,10 @@ impl Glyphs {
             .font_file2(refs.file);
         let packed = super::written::packed(&part);
         let mut file = pdf.stream(refs.file, &packed);
-        file.filter(Filter::FlateDecode)
-            .pair(Name(b"Length1"), i32::try_from(part.len()).unwrap_or(i32::MAX));
+        file.filter(Filter::FlateDecode).pair(
+            Name(b"Length1"),
+            i32::try_from(part.len()).unwrap_or(i32::MAX),
+        );
         file.finish();
 
         let mut letters = UnicodeCmap::new(Name(b"Letters"), system);

@@ -47,10 +47,14 @@ pub fn write_gradient(
     let mut shading = written.function_shading();
     match gradient.places {
         Places::Linear(ends) => {
-            shading.shading_type(FunctionShadingType::Axial).coords(ends);
+            shading
+                .shading_type(FunctionShadingType::Axial)
+                .coords(ends);
         }
         Places::Radial(circles) => {
-            shading.shading_type(FunctionShadingType::Radial).coords(circles);
+            shading
+                .shading_type(FunctionShadingType::Radial)
+                .coords(circles);
         }
     }
     shading.color_space().device_rgb();

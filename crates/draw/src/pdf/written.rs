@@ -64,10 +64,7 @@ impl Page {
                     let onto_page = onto_page.pre_concat(own.abs_transform());
                     self.path(own, onto_page);
                 }
-                Node::Text(own) => {
-                    let onto_page = onto_page.pre_concat(own.abs_transform());
-                    self.text(own, onto_page);
-                }
+                Node::Text(own) => self.text(own, onto_page),
                 // Figures have none.
                 Node::Image(_) => {}
             }
@@ -214,23 +211,36 @@ impl Page {
         }
     }
 
-    fn text(&mut self, text: &Text, onto_page: Transform) {
+    /// The rim of letters, below them: outlines, so that the text is found once.
+    fn rim(&mut self, group: &Group, onto_page: Transform) {
+        for node in group.children() {
+            match node {
+                Node::Group(own) => self.rim(own, onto_page),
+                Node::Path(own) if own.paint_order() == PaintOrder::StrokeAndFill => {
+                    if let Some(stroke) = own.stroke() {
+                        let m = onto_page.pre_concat(own.abs_transform());
+                        self.content.save_state();
+                        self.paint(stroke.paint(), m, true);
+                        self.content.transform([m.sx, m.ky, m.kx, m.sy, m.tx, m.ty]);
+                        self.line(stroke);
+                        self.outline(own);
+                        self.content.stroke();
+                        self.content.restore_state();
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn text(&mut self, text: &Text, page: Transform) {
+        self.rim(text.flattened(), page);
+        let onto_page = page.pre_concat(text.abs_transform());
         for span in text.layouted() {
             let (Some(fill), true) = (&span.fill, span.visible) else {
                 continue;
             };
             self.content.save_state();
-            // A rim lies below the letters.
-            if let (Some(stroke), PaintOrder::StrokeAndFill) = (&span.stroke, span.paint_order) {
-                self.paint(stroke.paint(), onto_page, true);
-                self.content
-                    .set_line_width(POINT * stroke.width().get())
-                    .set_line_join(LineJoinStyle::RoundJoin)
-                    .set_text_rendering_mode(pdf_writer::types::TextRenderingMode::Stroke);
-                self.letters(&span.positioned_glyphs, onto_page);
-                self.content
-                    .set_text_rendering_mode(pdf_writer::types::TextRenderingMode::Fill);
-            }
             self.paint(fill.paint(), onto_page, false);
             self.letters(&span.positioned_glyphs, onto_page);
             self.content.restore_state();
@@ -248,7 +258,9 @@ impl Page {
             // The page in points: the size of the letters is that of the font.
             let own = glyph.outline_transform();
             let (sx, kx) = (own.sx.hypot(own.ky), own.sy.hypot(own.kx));
-            let m = onto_page.pre_concat(own).pre_scale(1.0 / (sx * POINT), 1.0 / (kx * POINT));
+            let m = onto_page
+                .pre_concat(own)
+                .pre_scale(1.0 / (sx * POINT), 1.0 / (kx * POINT));
             self.content
                 .set_font(as_name(FONT), POINT * size)
                 .set_text_matrix([m.sx, m.ky, m.kx, m.sy, m.tx, m.ty])
@@ -306,7 +318,8 @@ impl Page {
             write_opacity(&mut pdf, *state, *opacity);
         }
         self.glyphs.write(&mut pdf, &refs)?;
-        pdf.document_info(next()).producer(pdf_writer::TextStr("windfall"));
+        pdf.document_info(next())
+            .producer(pdf_writer::TextStr("windfall"));
         Ok(pdf.finish())
     }
 }

@@ -165,7 +165,7 @@ fn drawing_of(outcome: &LawsOutcome, paper: Option<Width>) -> Drawing {
         within(panels - 1.0).bottom() + BELOW + paper.map_or(0.0, |_| LINE),
     );
     let title = format!("{} laws on {} impacts", laws.len(), outcome.impacts);
-    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(24.0, 26.0, &title);
     drawing.dashed(&[(24.0, 43.0), (42.0, 43.0)], Ink::Text, 1.0);
     let legend = "ΔAICc of 10: a law beyond it has next to no support";
     drawing.text((48.0, 46.8), Anchor::Start, 11.0, legend);

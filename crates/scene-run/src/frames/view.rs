@@ -90,7 +90,10 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     let out = request.out.as_deref();
     let ending = out.and_then(Path::extension).and_then(|own| own.to_str());
     if out.is_some() && !matches!(ending, Some("svg" | "png" | "pdf")) {
-        return Err(unusable("--out", "give a file that ends in .svg, .png or .pdf"));
+        return Err(unusable(
+            "--out",
+            "give a file that ends in .svg, .png or .pdf",
+        ));
     }
     let mut frames = open_frames(path)?;
     let directory = run_directory(path);

@@ -83,7 +83,7 @@ fn drawing_of(
     let width = columns as f64 * step_x + beside;
     let mut drawing = Drawing::at_width(paper, width, TOP + rows as f64 * step_y);
     let title = format!("Contours of {}", own.title);
-    drawing.text((LEFT, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(LEFT, 26.0, &title);
     let mut any = PairPlaces::default();
     for (index, grid) in own.grids.iter().enumerate() {
         let within = Rectangle {

@@ -143,7 +143,7 @@ fn drawing_of(
     let width = sides + panels * panel;
     let mut drawing = Drawing::at_width(paper, width, TOP + second + height + BELOW);
     let title = format!("Effects on {}", column_title(&model.response).0);
-    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(24.0, 26.0, &title);
     let (mut x, mut y) = (24.0, 39.0);
     for (lowers, label) in [(false, "raises"), (true, "lowers")] {
         draw_mark(&mut drawing, (x + 4.0, y), lowers);
@@ -164,7 +164,11 @@ fn drawing_of(
         height,
     };
     draw_pareto(&mut drawing, effects, within);
-    let left = if aside { LEFT + panel + BETWEEN } else { BETWEEN };
+    let left = if aside {
+        LEFT + panel + BETWEEN
+    } else {
+        BETWEEN
+    };
     let within = Rectangle {
         left,
         top: TOP + second,

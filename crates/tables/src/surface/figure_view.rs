@@ -67,21 +67,19 @@ fn drawing_of(
     let columns = paper.map_or(count.min(COLUMNS), |own| own.columns(count).min(COLUMNS));
     let rows = count.div_ceil(columns.max(1));
     let panel = paper.map_or(WIDTH, |own| (own.px() / columns as f64).min(WIDTH));
+    let high = HEIGHT * panel / WIDTH + paper.map_or(0.0, |_| 24.0);
     let width = columns as f64 * panel + BESIDE;
-    let mut drawing = Drawing::at_width(paper, width, TOP + rows as f64 * HEIGHT + 8.0);
+    let mut drawing = Drawing::at_width(paper, width, TOP + rows as f64 * high + 8.0);
     let title = format!("Surface of {}", own.title);
-    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(24.0, 26.0, &title);
     for (index, grid) in own.grids.iter().enumerate() {
         let middle = (
             (index % columns) as f64 * panel + 0.5 * panel,
-            TOP + (index / columns) as f64 * HEIGHT + 0.57 * HEIGHT,
+            TOP + (index / columns) as f64 * high + 0.57 * high,
         );
         let scene = scene_of(own, grid, (middle, SCALE * panel / WIDTH));
         let others = others_of(fitted, grid);
-        let corner = (
-            middle.0 - 0.5 * panel + 24.0,
-            middle.1 - 0.57 * HEIGHT + 12.0,
-        );
+        let corner = (middle.0 - 0.5 * panel + 24.0, middle.1 - 0.57 * high + 12.0);
         drawing.text(corner, Anchor::Start, 10.5, &others);
         let titles = [grid.factors.0, grid.factors.1].map(|place| factor_title(fitted, place));
         scene.draw_box(
@@ -126,11 +124,7 @@ struct Scene {
     scale: f64,
 }
 
-fn scene_of(
-    own: &SurfacePairs,
-    grid: &SurfaceGrid,
-    (middle, scale): ((f64, f64), f64),
-) -> Scene {
+fn scene_of(own: &SurfacePairs, grid: &SurfaceGrid, (middle, scale): ((f64, f64), f64)) -> Scene {
     let ends = |values: &[f64]| {
         let (first, last) = (values.first(), values.last());
         (first.copied().unwrap_or(0.0), last.copied().unwrap_or(1.0))

@@ -22,8 +22,8 @@ use crate::args::surface::SurfaceArguments;
 use crate::saying::Saying;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use std::path::PathBuf;
-use windfall_draw::width::Width;
 use windfall_campaign::settings::open_options::OpenRequest;
+use windfall_draw::width::Width;
 
 /// From recordings of fruit impacts to contact-force laws.
 #[derive(Debug, Parser)]
