@@ -11,6 +11,9 @@ const LEAST_TINT: f64 = 2.0;
 /// Height of a line of the legend; px.
 const LEGEND_LINE: f64 = 15.0;
 
+/// How much wider text is where a machine has none of the fonts that are asked for; 1.
+const OTHER_FONT: f64 = 1.1;
+
 /// Fewer points than this are drawn larger.
 const FEW_POINTS: usize = 150;
 
@@ -102,7 +105,7 @@ fn legend_places(panel: &Panel, (left, right): (f64, f64), labels: &Labels) -> V
     labelled(panel)
         .iter()
         .map(|(_, series)| {
-            let width = 36.0 + text_width(&series.label, labels.size);
+            let width = 36.0 + OTHER_FONT * text_width(&series.label, labels.size);
             if x + width > right && x > left {
                 (line, x) = (line + 1, left);
             }

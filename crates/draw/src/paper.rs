@@ -27,7 +27,7 @@ const LEAST: f64 = 110.0;
 const MOST: f64 = 290.0;
 
 /// How much higher panels are whose axes are equal; 1.
-const EQUAL: f64 = 1.35;
+const EQUAL: f64 = 1.3;
 
 /// Height of a page, and of the lowest panel; px.
 const PAGE: f64 = 880.0;

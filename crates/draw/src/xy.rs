@@ -59,7 +59,7 @@ pub fn svg_of_figure(figure: &Figure, theme: &Theme) -> String {
 }
 
 /// Height of panels in a page, of which two rows and a caption fill half of a sheet; px.
-const LOW: f64 = 122.0;
+const LOW: f64 = 100.0;
 
 /// Panels of a page's figure that stay together; more are parts between which a page may end.
 const TOGETHER: usize = 4;

@@ -316,7 +316,10 @@ fn add_rows(words: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
             }
             return;
         }
-        Value::Array(all) => all.iter().map(plain).collect::<Vec<_>>().join(", "),
+        Value::Array(all) => {
+            let set = all.iter().filter(|own| !own.is_null());
+            set.map(plain).collect::<Vec<_>>().join(", ")
+        }
         other => plain(other),
     };
     if !own.is_empty() {

@@ -11,14 +11,15 @@ use windfall_draw::width::Width;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Fits what is not in DIR/results.sqlite yet, then writes into DIR/report: report.html \
-(figures, tables, methods, findings and origin in one file that needs no network; print it for a PDF), \
-figures/ (each as SVG, PNG at 300 dots per inch, and CSV), impacts.csv, results.json, inputs.csv \
+(numbered figures and tables, methods, findings and origin in one file that needs no network; print it for a PDF), \
+figures/ (each as SVG, PNG at 300 dots per inch, and CSV, or as --figure-format says), impacts.csv, results.json, inputs.csv \
 (SHA-256 of every file read), windfall.bib and CITATION.cff. Files of other names there are left alone.
 
 Examples:
   windfall report my-campaign
   windfall report my-campaign --group variety --intervals profile
-  windfall report my-campaign --law kuwabara-kono --law hertz --out two-laws --theme dark"
+  windfall report my-campaign --law kuwabara-kono --law hertz --out two-laws --theme dark
+  windfall report my-campaign --width 84mm --figure-format pdf"
 )]
 pub struct ReportArguments {
     /// The campaign directory
