@@ -225,7 +225,12 @@ impl Scene {
         drawing.text((px - 24.0, py + 34.0), Anchor::End, 11.5, &title);
         let (px, py) = self.project(-1.0, 1.0, TALL);
         let title = with_unit(up, z.power);
-        drawing.text((px - 34.0, py - 10.0), Anchor::Start, 11.5, &title);
+        drawing.text(
+            ((px - 34.0).max(3.0), py - 10.0),
+            Anchor::Start,
+            11.5,
+            &title,
+        );
     }
 
     /// The contours below the surface.
