@@ -2,7 +2,7 @@
 
 use crate::axis::{Axis, unit_label};
 use crate::frame::{Frame, Rectangle};
-use crate::grid::{GridPanel, Scale, axis_of, inside};
+use crate::grid_panel::{GridPanel, Scale, axis_of, inside};
 use crate::panel::Panel;
 use crate::panel_drawing::{
     Labels, draw_legend, draw_within, legend_height, own_legend, shared_legend,

@@ -3,6 +3,8 @@
 #[cfg(feature = "png")]
 mod font;
 #[cfg(feature = "png")]
+mod packed;
+#[cfg(feature = "png")]
 mod paint;
 #[cfg(feature = "png")]
 mod written;

@@ -1,7 +1,8 @@
 //! A small writer of SVG: what the figures of windfall are drawn with.
 
-use crate::colour_map::{Rgb, css, mixed};
-use crate::text_width::RAISED_SIZE;
+use crate::colour_map::{Rgb, css};
+use crate::raised::{RAISED_SIZE, parts};
+use crate::shapes::{PATTERNS, SHAPES, shading};
 use crate::theme::{SCALE, SERIES, Theme};
 use crate::width::{LEAST_LINE, LETTERS, Width, mm_text};
 use std::collections::BTreeSet;
@@ -67,42 +68,6 @@ fn colour_of(mark: char, theme: &Theme) -> Option<&'static str> {
     let inks = plain.iter().chain(&theme.series).chain(&theme.scale);
     inks.copied().nth(index)
 }
-
-/// Dashes of lines by their number.
-const PATTERNS: [&str; 7] = [
-    "",
-    "8 2.5 2 2.5",
-    "2 2.5",
-    "12 4",
-    "8 2.5 2 2.5 2 2.5",
-    "4 2 1 2",
-    "14 3 3 3",
-];
-
-/// Corners of marks by their number, over the radius of a dot of about the same area; a dot itself
-/// has none.
-const SHAPES: [&[(f64, f64)]; 7] = [
-    &[],
-    &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
-    &[(0.0, -1.4), (1.25, 0.8), (-1.25, 0.8)],
-    &[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)],
-    &[(0.0, 1.4), (1.25, -0.8), (-1.25, -0.8)],
-    &[
-        (-0.45, -1.35),
-        (0.45, -1.35),
-        (0.45, -0.45),
-        (1.35, -0.45),
-        (1.35, 0.45),
-        (0.45, 0.45),
-        (0.45, 1.35),
-        (-0.45, 1.35),
-        (-0.45, 0.45),
-        (-1.35, 0.45),
-        (-1.35, -0.45),
-        (-0.45, -0.45),
-    ],
-    &[(-1.2, -1.2), (1.2, -1.2), (-1.2, 1.2), (1.2, 1.2)],
-];
 
 /// A drawing of a given size; px, y downwards.
 #[derive(Clone, Debug)]
@@ -445,28 +410,6 @@ impl Drawing {
     }
 }
 
-/// How a ball of a colour is lit: where, and how far towards white or black.
-fn shading(colour: Rgb) -> String {
-    const WHITE: Rgb = [255; 3];
-    const BLACK: Rgb = [0; 3];
-    let stops = [
-        (0.0, WHITE, 0.55),
-        (0.2, WHITE, 0.2),
-        (0.5, WHITE, 0.0),
-        (0.82, BLACK, 0.2),
-        (1.0, BLACK, 0.5),
-    ];
-    let mut text = format!(
-        r#"<radialGradient id="ball-{}" cx="0.5" cy="0.5" r="0.5" fx="0.36" fy="0.3">"#,
-        &css(colour)[1..]
-    );
-    for (at, towards, part) in stops {
-        let own = css(mixed(colour, towards, part));
-        let _ = write!(text, r#"<stop offset="{at}" stop-color="{own}"/>"#);
-    }
-    text + "</radialGradient>\n"
-}
-
 /// Text escaped for XML; what XML cannot hold (control characters, U+FFFE and U+FFFF)
 /// becomes a blank, and so do characters that stand for colours.
 fn escaped(text: &str) -> String {
@@ -484,49 +427,6 @@ fn escaped(text: &str) -> String {
         }
     }
     whole
-}
-
-/// Characters above the line with those that they are raised from. Few fonts have
-/// all of them, and of different heights.
-const RAISED: [(char, char); 11] = [
-    ('⁰', '0'),
-    ('¹', '1'),
-    ('²', '2'),
-    ('³', '3'),
-    ('⁴', '4'),
-    ('⁵', '5'),
-    ('⁶', '6'),
-    ('⁷', '7'),
-    ('⁸', '8'),
-    ('⁹', '9'),
-    ('⁻', '\u{2212}'),
-];
-
-/// Text in parts, each with whether it is raised: raised characters, and numbers
-/// behind a "^".
-pub(crate) fn parts(text: &str) -> Vec<(String, bool)> {
-    let mut parts: Vec<(String, bool)> = Vec::new();
-    let mut push = |c: char, raised: bool| match parts.last_mut() {
-        Some((part, of)) if *of == raised => part.push(c),
-        _ => parts.push((c.to_string(), raised)),
-    };
-    let mut exponent = false;
-    let mut characters = text.chars().peekable();
-    while let Some(c) = characters.next() {
-        let number = |c: &char| c.is_ascii_digit() || ".-".contains(*c);
-        if c == '^' && characters.peek().is_some_and(number) {
-            exponent = true;
-            continue;
-        }
-        exponent &= number(&c);
-        let raised = RAISED.iter().find(|(from, _)| *from == c);
-        match (raised, exponent) {
-            (Some((_, to)), _) => push(*to, true),
-            (None, true) => push(if c == '-' { '\u{2212}' } else { c }, true),
-            (None, false) => push(c, false),
-        }
-    }
-    parts
 }
 
 /// Most characters of a text that is drawn; further ones would lie outside of the picture, and
@@ -561,6 +461,7 @@ fn set_text(text: &str, size: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raised::RAISED;
     use crate::theme::{DARK, LIGHT};
     use proptest::prelude::Strategy;
 

@@ -1,5 +1,7 @@
 //! How wide text is in the font of the figures, so that nothing overlaps or is cut.
 
+use crate::raised::{RAISED_SIZE, parts};
+
 /// Advance widths of the characters from " " to "~" in Liberation Sans, which are those of Arial
 /// and Helvetica; 1/2048 of the size of the letters.
 const PLAIN: [u16; 95] = [
@@ -31,9 +33,6 @@ const OTHERS: [(char, u16); 12] = [
 const LETTER: u16 = 1600;
 const ANYTHING: u16 = 2560;
 
-/// Size of raised parts over that of the text; 1.
-pub(crate) const RAISED_SIZE: f64 = 0.72;
-
 /// Width of a character; 1/2048 of the size of the letters. Of what is not in the tables it is at
 /// least as wide as it can be.
 fn advance(c: char) -> u16 {
@@ -51,7 +50,7 @@ fn advance(c: char) -> u16 {
 /// Width of a text in letters of this size; px. Raised parts count as they are drawn.
 pub fn text_width(text: &str, size: f64) -> f64 {
     let width = |part: &str| part.chars().map(|c| f64::from(advance(c))).sum::<f64>();
-    let parts = crate::svg::parts(text).into_iter();
+    let parts = parts(text).into_iter();
     let parts = parts.map(|(part, raised)| width(&part) * if raised { RAISED_SIZE } else { 1.0 });
     parts.sum::<f64>() * size / 2048.0
 }

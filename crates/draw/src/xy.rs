@@ -2,7 +2,7 @@
 
 use crate::axis::axis;
 use crate::frame::{Frame, Rectangle};
-use crate::grid::GridPanel;
+use crate::grid_panel::GridPanel;
 pub use crate::panel::{Mark, Panel, Series, Side, Style};
 use crate::panel_drawing::{
     Labels, MOST_POINTS, draw_legend, draw_within, legend_height, named_lines, shown_ranges,

@@ -87,7 +87,7 @@ impl Glyphs {
             .cap_height(metrics.cap_height.unwrap_or(metrics.ascent) * scale)
             .stem_v(80.0)
             .font_file2(refs.file);
-        let packed = super::written::packed(&part);
+        let packed = super::packed::packed(&part);
         let mut file = pdf.stream(refs.file, &packed);
         file.filter(Filter::FlateDecode).pair(
             Name(b"Length1"),

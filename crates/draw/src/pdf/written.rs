@@ -1,10 +1,9 @@
 //! SVG written as PDF.
 
 use super::font::{FontRefs, Glyphs};
+use super::packed::packed;
 use super::paint::{Gradient, Places, as_name, name_of, parts_of, write_gradient, write_opacity};
 use crate::png::OPTIONS;
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
 use pdf_writer::types::{ColorSpaceOperand, LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Pdf, Rect, Ref, Str};
 use resvg::tiny_skia::{PathSegment, Transform};
@@ -12,7 +11,6 @@ use resvg::usvg::layout::PositionedGlyph;
 use resvg::usvg::{
     FillRule, Group, LineCap, LineJoin, Node, Paint, PaintOrder, Path, Stroke, Text, Tree,
 };
-use std::io::Write;
 use windfall_files::error::Error;
 
 /// Points per px.
@@ -45,14 +43,6 @@ pub fn written(svg: &str) -> Result<Vec<u8>, Error> {
     };
     page.group(tree.root(), onto_page);
     page.finish(size).map_err(failed)
-}
-
-/// Bytes as a stream holds them.
-pub fn packed(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    // A vector takes everything.
-    let _ = encoder.write_all(bytes);
-    encoder.finish().unwrap_or_default()
 }
 
 impl Page {
