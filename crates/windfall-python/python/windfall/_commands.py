@@ -140,6 +140,7 @@ def inspect(
     presets: bool = False,
     channel: Value | Sequence[Value] | None = None,
     plot: Path | None = None,
+    width: Value | None = None,
     export: Path | None = None,
     file_format: Value | None = None,
     separator: Value | None = None,
@@ -163,8 +164,10 @@ def inspect(
     * `preset`: Program that wrote the recordings, which says what their columns are called
     * `presets`: List the presets, with the exports that they were made from
     * `channel`: Show only this channel; may be repeated
-    * `plot`: Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same
-      name); one recording only
+    * `plot`: Write a figure of the channels (SVG, PNG or PDF, by its ending) and its data (CSV,
+      same name); one recording only
+    * `width`: Width of the figure in print, as a journal asks for it: 84mm, 174mm; letters are 8
+      pt at that size
     * `export`: Write every sample as it was read, as CSV or NumPy array (by its ending); one
       recording only
     * `file_format`: Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58,
@@ -188,6 +191,7 @@ def inspect(
             "--presets": presets,
             "--channel": channel,
             "--plot": plot,
+            "--width": width,
             "--export": export,
             "--file-format": file_format,
             "--separator": separator,
@@ -232,6 +236,8 @@ def fit_campaign(
     refit: bool = False,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     detail: Path | None = None,
     card: Path | None = None,
     threads: int | None = None,
@@ -290,6 +296,9 @@ def fit_campaign(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `detail`: Write samples, residuals, weights, covariance and draws of each fit into this
       directory, as ID-LAW.json for arviz.from_json; fits every impact once more
     * `card`: Write the law as a law card: the median fruit, how fruit differ, and in what it was
@@ -343,6 +352,8 @@ def fit_campaign(
             "--refit": refit,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--detail": detail,
             "--card": card,
             "--threads": threads,
@@ -377,6 +388,8 @@ def laws(
     quantities: Value | Sequence[Value] | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     refit: bool = False,
     threads: int | None = None,
     out: Path | None = None,
@@ -396,6 +409,9 @@ def laws(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `refit`: Find the answer anew, even where nothing has changed since it was found
     * `threads`: Threads; all cores if left out
     * `out`: Write the result into a file, too: .csv, .json or .txt
@@ -409,6 +425,8 @@ def laws(
             "--quantities": quantities,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--refit": refit,
             "--threads": threads,
             "--out": out,
@@ -485,6 +503,8 @@ def report(
     *,
     out: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     law: Value | Sequence[Value] | None = None,
     free: Value | Sequence[Value] | None = None,
     intervals: Literal["asymptotic", "profile", "bootstrap", "posterior"] | None = None,
@@ -502,6 +522,9 @@ def report(
     * `out`: Directory to write into in place of DIR/report
     * `theme`: Colours of the files of figures; the page follows the reader's setting [default:
       light]
+    * `width`: Width of the files of figures in print, as a journal asks for it: 84mm, 174mm;
+      letters are 8 pt at that size
+    * `figure_format`: Formats of the files of figures in place of SVG and PNG
     * `law`: Law to fit in place of those of the campaign; may be repeated
     * `free`: Parameter to estimate although it has a value; may be repeated
     * `intervals`: How the 95 % intervals are made
@@ -514,6 +537,8 @@ def report(
         {
             "--out": out,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--law": law,
             "--free": free,
             "--intervals": intervals,
@@ -533,6 +558,8 @@ def calibrate(
     way: Literal["waveform", "features", "design"] | Sequence[Literal["waveform", "features", "design"]] | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     tables: Table | None = None,
     card: Path | None = None,
     profile: bool = False,
@@ -551,6 +578,9 @@ def calibrate(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `tables`: Write all tables as CSV and text into this directory
     * `card`: Write the calibrated law as a law card
     * `profile`: Intervals from the profile of the sum of squares, which takes longer, in place of
@@ -565,6 +595,8 @@ def calibrate(
             "--way": way,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--tables": tables,
             "--card": card,
             "--profile": profile,
@@ -599,6 +631,7 @@ def plan_mean(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -629,9 +662,11 @@ def plan_mean(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -662,6 +697,7 @@ def plan_mean(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -698,6 +734,7 @@ def plan_difference(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -733,9 +770,11 @@ def plan_difference(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -770,6 +809,7 @@ def plan_difference(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -803,6 +843,7 @@ def plan_groups(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -834,9 +875,11 @@ def plan_groups(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -868,6 +911,7 @@ def plan_groups(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -904,6 +948,7 @@ def plan_slope(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -940,9 +985,11 @@ def plan_slope(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -977,6 +1024,7 @@ def plan_slope(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -1010,6 +1058,7 @@ def plan_model(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -1041,9 +1090,11 @@ def plan_model(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -1074,6 +1125,7 @@ def plan_model(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -1114,6 +1166,7 @@ def plan_surface(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -1154,9 +1207,11 @@ def plan_surface(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -1194,6 +1249,7 @@ def plan_surface(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -1223,6 +1279,7 @@ def plan_population(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -1249,9 +1306,11 @@ def plan_population(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
@@ -1273,6 +1332,7 @@ def plan_population(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -1304,6 +1364,7 @@ def plan_critical_energy(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -1335,9 +1396,11 @@ def plan_critical_energy(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
@@ -1364,6 +1427,7 @@ def plan_critical_energy(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -1901,6 +1965,7 @@ def simulate_impact(
     driving_acceleration: Value | None = None,
     end: Literal["force-zero", "gap-zero"] | None = None,
     plot: Path | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -1918,8 +1983,10 @@ def simulate_impact(
     * `driving_acceleration`: Acceleration towards the fruit before and during contact, such as
       "9.81 m/s^2" [default: 0 m/s^2, and 9.80665 m/s^2 with --height]
     * `end`: When the contact is over [default: force-zero]
-    * `plot`: Write a figure of the impact, loop and force over time (SVG or PNG, by its ending),
-      and its data (CSV, same name)
+    * `plot`: Write a figure of the impact, loop and force over time (SVG, PNG or PDF, by its
+      ending), and its data (CSV, same name)
+    * `width`: Width of the figure in print, as a journal asks for it: 84mm, 174mm; letters are 8
+      pt at that size
     * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
@@ -1934,6 +2001,7 @@ def simulate_impact(
             "--driving-acceleration": driving_acceleration,
             "--end": end,
             "--plot": plot,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -2541,6 +2609,7 @@ def scene_picture(
     from_: Value | None = None,
     largest_force: Value | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -2555,7 +2624,10 @@ def scene_picture(
     * `from_`: From where: azimuth from x towards y and elevation, as "-62 deg,24 deg"
     * `largest_force`: Force of the last colour, as "100 N"; the largest of the scene if left out
     * `theme`: Colours [default: light]
-    * `out`: An .svg or .png (300 dots per inch); picture.svg and picture.png in RUN if left out
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `out`: An .svg, .png (300 dots per inch) or .pdf; picture.svg and picture.png in RUN if left
+      out
     """
     return call(
         "scene picture",
@@ -2565,6 +2637,7 @@ def scene_picture(
             "--from": from_,
             "--largest-force": largest_force,
             "--theme": theme,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -2684,6 +2757,8 @@ def summary(
     confidence: float | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -2702,6 +2777,9 @@ def summary(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -2718,6 +2796,8 @@ def summary(
             "--confidence": confidence,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -2740,6 +2820,8 @@ def compare(
     confidence: float | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     measured: Value | None = None,
@@ -2766,6 +2848,9 @@ def compare(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -2788,6 +2873,8 @@ def compare(
             "--confidence": confidence,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--measured": measured,
@@ -2833,6 +2920,8 @@ def regress(
     predict: Table | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -2890,6 +2979,9 @@ def regress(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -2929,6 +3021,8 @@ def regress(
             "--predict": predict,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -2959,6 +3053,8 @@ def surface(
     grid_points: int | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -2994,6 +3090,9 @@ def surface(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -3021,6 +3120,8 @@ def surface(
             "--grid-points": grid_points,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
