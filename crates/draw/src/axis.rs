@@ -26,7 +26,7 @@ pub struct Axis {
 
 /// An axis over data from `low` to `high` with about `count` round ticks.
 ///
-/// Ticks are 1, 2 or 5 times a power of ten apart, and at least [`FEWEST`]. Data of one value gets
+/// Ticks are 1, 2 or 5 times a power of ten apart, and at least three. Data of one value gets
 /// a range around it.
 pub fn axis(low: f64, high: f64, count: usize) -> Axis {
     let (low, high) = widened(low, high);
