@@ -6,6 +6,9 @@ const PLAIN_POWERS: std::ops::RangeInclusive<i32> = -2..=4;
 /// Rounding of an end, as a part of the distance of ticks; 1.
 const ROUNDING: f64 = 1e-9;
 
+/// Fewest ticks of an axis: two could not be told from those of a logarithm.
+const FEWEST: i64 = 3;
+
 /// One axis: its range, ticks, and the factor that its labels leave out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -23,15 +26,23 @@ pub struct Axis {
 
 /// An axis over data from `low` to `high` with about `count` round ticks.
 ///
-/// Ticks are 1, 2 or 5 times a power of ten apart. Data of one value gets a
-/// range around it.
+/// Ticks are 1, 2 or 5 times a power of ten apart, and at least three. Data of one value gets
+/// a range around it.
 pub fn axis(low: f64, high: f64, count: usize) -> Axis {
     let (low, high) = widened(low, high);
-    let step = round_step((high - low) / count.max(1) as f64);
+    let mut step = round_step((high - low) / count.max(1) as f64);
     // An end that is round but for rounding has its tick.
-    let first = (low / step - ROUNDING).ceil() as i64;
-    let last = (high / step + ROUNDING).floor() as i64;
-    let ticks: Vec<f64> = (first..=last).map(|i| i as f64 * step).collect();
+    let first = |step: f64| (low / step - ROUNDING).ceil() as i64;
+    let last = |step: f64| (high / step + ROUNDING).floor() as i64;
+    // The next two smaller steps, at the most: a range that is no number has no ticks.
+    for _ in 0..2 {
+        if last(step) - first(step) + 1 < FEWEST {
+            step = round_step(0.35 * step);
+        }
+    }
+    let ticks: Vec<f64> = (first(step)..=last(step))
+        .map(|i| i as f64 * step)
+        .collect();
     let largest = low.abs().max(high.abs());
     let magnitude = largest.log10().floor() as i32;
     let power = match PLAIN_POWERS.contains(&magnitude) {
@@ -136,7 +147,7 @@ mod tests {
                 found.ticks.iter().all(|t| (low..=high).contains(t)),
                 "{low}"
             );
-            assert!((2..=7).contains(&found.ticks.len()), "{found:?}");
+            assert!((3..=7).contains(&found.ticks.len()), "{found:?}");
             let mut labels = found.labels.clone();
             labels.dedup();
             assert_eq!(labels.len(), found.labels.len(), "{found:?}");

@@ -1,8 +1,11 @@
-//! Figures as files: NAME.svg, NAME.png, and NAME.csv with what they show.
+//! Figures as files: NAME.svg, NAME.png and NAME.pdf, and NAME.csv with what they show.
 
+use crate::grid::{Grid, drawing_of_grid};
+use crate::pdf::pdf_of_svg;
 use crate::png::{PRINT, png_of_svg};
 use crate::svg::Drawing;
 use crate::theme::FigureTheme;
+use crate::width::Width;
 use crate::xy::{Figure, csv_of_figure, drawing_of_figure};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -11,7 +14,43 @@ use windfall_files::inputs::check_output;
 use windfall_files::provenance::digest_text;
 use windfall_files::write_file::{check_target, make_directory, write_whole};
 
-/// Where figures go and which colours they have.
+/// A kind of file of figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum FigureFormat {
+    /// Vectors for pages and editors.
+    Svg,
+    /// 300 dots per inch.
+    Png,
+    /// Vectors for journals, the font of the letters included.
+    Pdf,
+}
+
+impl FigureFormat {
+    /// Ending of its files.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+        }
+    }
+
+    /// A figure in this format.
+    ///
+    /// # Errors
+    /// [`Error::FigureUndrawable`], also where the cargo feature `png` is off and the format is
+    /// not SVG.
+    pub fn of_svg(self, svg: &str) -> Result<Vec<u8>, Error> {
+        match self {
+            Self::Svg => Ok(svg.as_bytes().to_vec()),
+            Self::Png => png_of_svg(svg, PRINT),
+            Self::Pdf => pdf_of_svg(svg),
+        }
+    }
+}
+
+/// Where figures go and how they are drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct FigureFolder {
@@ -24,15 +63,47 @@ pub struct FigureFolder {
         arg(long, value_enum, default_value_t, requires = "figures")
     )]
     pub theme: FigureTheme,
+    /// Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "LENGTH", requires = "figures")
+    )]
+    pub width: Option<Width>,
+    /// Formats of the figures in place of SVG and PNG; the data are always CSV
+    #[cfg_attr(
+        feature = "clap",
+        arg(
+            id = "figure_format",
+            long = "figure-format",
+            value_enum,
+            value_delimiter = ',',
+            value_name = "FORMAT",
+            requires = "figures"
+        )
+    )]
+    pub formats: Vec<FigureFormat>,
 }
 
 impl FigureFolder {
-    /// A directory for figures on paper.
+    /// A directory for figures in light colours, as large as a screen shows them.
     pub fn of(directory: &Path) -> Self {
         Self {
             directory: directory.to_path_buf(),
-            theme: FigureTheme::Light,
+            ..Self::default()
         }
+    }
+
+    /// Formats that are written, by their endings; where none is asked for, SVG, and PNG if this
+    /// build draws it.
+    fn formats(&self) -> Vec<FigureFormat> {
+        let mut formats = match (self.formats.is_empty(), cfg!(feature = "png")) {
+            (false, _) => self.formats.clone(),
+            (true, true) => vec![FigureFormat::Png, FigureFormat::Svg],
+            (true, false) => vec![FigureFormat::Svg],
+        };
+        formats.sort_by_key(|own| own.ending());
+        formats.dedup();
+        formats
     }
 }
 
@@ -47,7 +118,26 @@ pub struct NamedFigure {
     pub figure: Figure,
 }
 
-/// A figure that is drawn already, with the data that it shows.
+/// What a figure shows, drawn or not yet.
+#[derive(Clone, Debug)]
+pub enum Picture {
+    /// Panels side by side, as many as fit.
+    Grid(Grid),
+    /// Drawn at the width that was asked for.
+    Drawn(Drawing),
+}
+
+impl Picture {
+    /// The drawing at a width on paper.
+    pub fn drawing(&self, width: Option<Width>) -> Drawing {
+        match self {
+            Self::Grid(grid) => drawing_of_grid(grid, width),
+            Self::Drawn(drawing) => drawing.clone(),
+        }
+    }
+}
+
+/// A picture with the data that it shows.
 #[derive(Clone, Debug)]
 pub struct Painting {
     /// Name of its files, without an ending, as [`file_name`] makes them.
@@ -55,7 +145,7 @@ pub struct Painting {
     /// What it shows, in a sentence or two.
     pub caption: String,
     /// The picture, whose colours the theme names.
-    pub drawing: Drawing,
+    pub picture: Picture,
     /// The data that it shows, as CSV.
     pub csv: String,
 }
@@ -64,7 +154,7 @@ pub struct Painting {
 ///
 /// * `name`: id of the recording; what file names cannot hold becomes "_"
 ///
-/// Returns the files: data, dots, vectors.
+/// Returns the files: data, and the figure in each format.
 pub fn write_figure(
     folder: &FigureFolder,
     name: &str,
@@ -73,7 +163,7 @@ pub fn write_figure(
     write_drawing(
         folder,
         name,
-        &drawing_of_figure(figure),
+        &drawing_of_figure(figure, folder.width),
         &csv_of_figure(figure)?,
     )
 }
@@ -95,13 +185,11 @@ pub fn write_paintings(
     paintings: &[Painting],
 ) -> Result<Vec<PathBuf>, Error> {
     check_paths(folder, paintings.iter().map(|own| own.name.as_str()))?;
-    let write = |p: &Painting| write_drawing(folder, &p.name, &p.drawing, &p.csv);
+    let write =
+        |p: &Painting| write_drawing(folder, &p.name, &p.picture.drawing(folder.width), &p.csv);
     let written: Result<Vec<Vec<PathBuf>>, Error> = paintings.par_iter().map(write).collect();
     Ok(written?.into_iter().flatten().collect())
 }
-
-/// Endings of the files of a figure: data, dots, vectors.
-const ENDINGS: [&str; 3] = ["csv", "png", "svg"];
 
 /// Refuses names of which one may not be written, before any of them is.
 fn check_paths<'a>(
@@ -110,7 +198,8 @@ fn check_paths<'a>(
 ) -> Result<(), Error> {
     for name in names {
         let name = file_name(name);
-        for ending in ENDINGS {
+        let endings = folder.formats().into_iter().map(FigureFormat::ending);
+        for ending in std::iter::once("csv").chain(endings) {
             check_target(&folder.directory.join(format!("{name}.{ending}")))?;
         }
     }
@@ -126,22 +215,22 @@ fn write_drawing(
     let directory = &folder.directory;
     let name = file_name(name);
     let path = |ending: &str| directory.join(format!("{name}.{ending}"));
-    // Before the dots, which take longest.
-    ENDINGS
-        .iter()
+    let formats = folder.formats();
+    // Before they are drawn, which takes longest.
+    let endings = formats.iter().map(|own| own.ending());
+    std::iter::once("csv")
+        .chain(endings)
         .try_for_each(|own| check_output(&path(own)))?;
     make_directory(directory)?;
     let svg = drawing.svg(folder.theme.colours());
-    let png = match cfg!(feature = "png") {
-        true => Some(png_of_svg(&svg, PRINT)?),
-        false => None,
-    };
-    let contents = [Some(csv.as_bytes()), png.as_deref(), Some(svg.as_bytes())];
-    let mut files = Vec::new();
-    for (ending, contents) in ENDINGS.iter().zip(contents) {
-        let Some(contents) = contents else { continue };
-        write_whole(&path(ending), contents)?;
-        files.push(path(ending));
+    let pictures: Result<Vec<Vec<u8>>, Error> =
+        formats.iter().map(|own| own.of_svg(&svg)).collect();
+    let mut files = vec![path("csv")];
+    write_whole(&files[0], csv.as_bytes())?;
+    for (format, picture) in formats.iter().zip(pictures?) {
+        let file = path(format.ending());
+        write_whole(&file, &picture)?;
+        files.push(file);
     }
     Ok(files)
 }
@@ -198,11 +287,12 @@ mod tests {
             let folder = FigureFolder {
                 directory: directory.path().join("figures"),
                 theme,
+                ..FigureFolder::default()
             };
             let painting = Painting {
                 name: "force N/mm".to_owned(),
                 caption: String::new(),
-                drawing: Drawing::new(30.0, 20.0),
+                picture: Picture::Drawn(Drawing::new(30.0, 20.0)),
                 csv: "x,y\n1,2\n".to_owned(),
             };
             let files = write_paintings(&folder, &[painting]).unwrap();

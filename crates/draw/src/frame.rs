@@ -2,10 +2,18 @@
 
 use crate::axis::{Axis, unit_label};
 use crate::svg::{Anchor, Drawing, Ink};
+use crate::text_width::{lines_of, text_width};
 
 /// Sizes of the letters at ticks and of titles; px.
 const TICK: f64 = 10.5;
 const TITLE: f64 = 11.5;
+
+/// Least distance of labels at ticks; px.
+const APART: f64 = 2.0;
+
+/// Distance of the lines of a title, and how far it may reach beyond its axis; px.
+const LINE: f64 = 13.0;
+const BEYOND: f64 = 40.0;
 
 /// A rectangle of a drawing; px, y downwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,10 +95,40 @@ impl Frame {
     ) {
         let within = &self.within;
         let (left, bottom) = (within.left, within.bottom());
+        self.draw_ticks(drawing);
+        let title = format!("{x}{}", unit_label(x_unit, self.across.power));
+        let middle = left + 0.5 * within.width;
+        let size = drawing.letters(TITLE);
+        for (line, text) in lines_of(&title, size, within.width + BEYOND)
+            .iter()
+            .enumerate()
+        {
+            let at = (middle, bottom + 36.0 + LINE * line as f64);
+            drawing.text(at, Anchor::Middle, TITLE, text);
+        }
+        let title = format!("{y}{}", unit_label(y_unit, self.up.power));
+        let middle = within.top + 0.5 * within.height;
+        let lines = lines_of(&title, size, within.height + BEYOND);
+        for (line, text) in lines.iter().rev().enumerate() {
+            let at = (left - aside - LINE * line as f64, middle);
+            drawing.turned_text(at, TITLE, text);
+        }
+    }
+
+    /// Axes with ticks and their labels.
+    pub fn draw_ticks(&self, drawing: &mut Drawing) {
+        let within = &self.within;
+        let (left, bottom) = (within.left, within.bottom());
+        // A label that the one before it leaves no room for is left out.
+        let mut taken = f64::NEG_INFINITY;
         for (tick, label) in self.across.ticks.iter().zip(&self.across.labels) {
             let (x, _) = self.place((*tick, self.up.low));
             drawing.rule((x, bottom), (x, bottom + 4.0), Ink::Frame);
-            drawing.text((x, bottom + 16.0), Anchor::Middle, TICK, label);
+            let half = 0.5 * text_width(label, drawing.letters(TICK));
+            if x - half > taken {
+                drawing.text((x, bottom + 16.0), Anchor::Middle, TICK, label);
+                taken = x + half + APART;
+            }
         }
         for (tick, label) in self.up.ticks.iter().zip(&self.up.labels) {
             let (_, y) = self.place((self.across.low, *tick));
@@ -99,11 +137,5 @@ impl Frame {
         }
         drawing.rule((left, within.top), (left, bottom), Ink::Frame);
         drawing.rule((left, bottom), (within.right(), bottom), Ink::Frame);
-        let title = format!("{x}{}", unit_label(x_unit, self.across.power));
-        let middle = left + 0.5 * within.width;
-        drawing.text((middle, bottom + 36.0), Anchor::Middle, TITLE, &title);
-        let title = format!("{y}{}", unit_label(y_unit, self.up.power));
-        let middle = within.top + 0.5 * within.height;
-        drawing.turned_text((left - aside, middle), TITLE, &title);
     }
 }

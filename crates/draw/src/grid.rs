@@ -1,11 +1,15 @@
 //! Figures of small panels side by side: diagnostics of a model, groups, effects.
 
-use crate::axis::{Axis, axis};
 use crate::frame::{Frame, Rectangle};
+use crate::grid_panel::{CHARACTER, LONGEST_NAME, axis_of, cut, cut_apart, fitting, inside};
+pub use crate::grid_panel::{GridPanel, Scale};
 use crate::panel::Panel;
-use crate::panel_drawing::{Labels, draw_legend, draw_within, legend_height, range};
+use crate::panel_drawing::{
+    Labels, MOST_POINTS, draw_legend, draw_within, legend_height, named_lines,
+};
+use crate::paper::{Part, drawing_on_paper};
 use crate::svg::{Anchor, Drawing, Ink};
-use std::collections::BTreeSet;
+use crate::width::Width;
 
 /// Room around a panel and above all of them; px.
 const RIGHT: f64 = 14.0;
@@ -19,73 +23,21 @@ const BESIDE: f64 = 58.0;
 /// Height of a line of the notes below the panels; px.
 const NOTE: f64 = 14.0;
 
-/// Width of a character of the names and notes, and of titles; px.
-const CHARACTER: f64 = 5.7;
+/// Width of a character of titles, and of labels; px.
 const TITLE_CHARACTER: f64 = 6.3;
+const LABEL_CHARACTER: f64 = 5.8;
 
-/// Longest name at an axis; characters.
-const LONGEST_NAME: usize = 22;
-
-/// Labels within a small panel.
-const LABELS: Labels = Labels {
-    size: 10.0,
-    character: 5.8,
-    line: 10.5,
-    ring: 3.6,
-    dots: (1.9, 1.2),
-    alike: true,
-    whole: true,
-};
-
-/// What stands along an axis.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Scale {
-    /// Round numbers over the range of the data.
-    #[default]
-    Data,
-    /// Round numbers from one end to the other, at least as far as the data.
-    Reaching(f64, f64),
-    /// Round numbers from exactly one end to the other: what lies beyond is not drawn.
-    Between(f64, f64),
-    /// Names at 0, 1, 2 …
-    Names(Vec<String>),
-}
-
-/// A small panel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GridPanel {
-    /// What stands above it.
-    pub title: String,
-    /// Its series and named places.
-    pub panel: Panel,
-    /// Horizontal axis.
-    pub across: Scale,
-    /// Vertical axis.
-    pub up: Scale,
-    /// Texts about places, in the units of the axes.
-    pub texts: Vec<((f64, f64), String)>,
-    /// Why it is empty, where it is.
-    pub empty: String,
-}
-
-impl GridPanel {
-    /// A panel with axes of numbers over its data.
-    pub fn new(title: impl Into<String>, panel: Panel) -> Self {
-        Self {
-            title: title.into(),
-            panel,
-            across: Scale::Data,
-            up: Scale::Data,
-            texts: Vec::new(),
-            empty: String::new(),
-        }
-    }
-
-    /// Whether no series has a point that can be drawn.
-    fn is_empty(&self) -> bool {
-        let points = self.panel.series.iter().flat_map(|own| &own.points);
-        let mut finite = points.filter(|(x, y)| x.is_finite() && y.is_finite());
-        finite.next().is_none()
+/// Labels within small panels.
+pub(crate) fn small_labels(lines: Vec<usize>) -> Labels {
+    Labels {
+        size: 10.0,
+        line: 10.5,
+        ring: 3.6,
+        dots: (1.9, 1.2),
+        alike: true,
+        whole: true,
+        most: MOST_POINTS,
+        lines,
     }
 }
 
@@ -104,18 +56,29 @@ pub struct Grid {
     pub notes: Vec<String>,
 }
 
-/// Draws a grid, whose colours a theme names later.
+/// Draws a grid, whose colours a theme names later, at a width on paper or as large as it is.
 ///
 /// A panel without a finite point shows why it is empty. Places beyond the ends of a scale are
 /// not drawn.
-pub fn drawing_of_grid(grid: &Grid) -> Drawing {
+pub fn drawing_of_grid(grid: &Grid, paper: Option<Width>) -> Drawing {
+    let labels = &small_labels(named_lines(grid.panels.iter().map(|own| &own.panel)));
+    match paper {
+        Some(width) => {
+            let part = Part::all(grid.panels.len());
+            drawing_on_paper(&grid.panels, part, &grid.notes, labels, width)
+        }
+        None => plain_drawing(grid, labels),
+    }
+}
+
+fn plain_drawing(grid: &Grid, labels: &Labels) -> Drawing {
     let columns = grid.columns.clamp(1, grid.panels.len().max(1));
     let (width, height) = grid.size;
     let beside = grid.panels.iter().map(room_beside).fold(BESIDE, f64::max);
     let step = beside + width + RIGHT;
     let whole = step * columns as f64;
     let legend = |own: &GridPanel| {
-        legend_height(&with_short_labels(&own.panel, width), (0.0, width), &LABELS)
+        legend_height(&with_short_labels(&own.panel, width), (0.0, width), labels)
     };
     let rows: Vec<f64> = grid
         .panels
@@ -143,7 +106,7 @@ pub fn drawing_of_grid(grid: &Grid) -> Drawing {
             let title = (within.left, top + 14.0);
             let most = (step / TITLE_CHARACTER) as usize;
             drawing.text(title, Anchor::Start, 11.5, &cut(&own.title, most));
-            draw_panel(&mut drawing, own, within);
+            draw_panel(&mut drawing, own, within, labels);
         }
         top += above + legend + height + BELOW;
     }
@@ -164,10 +127,22 @@ fn room_beside(own: &GridPanel) -> f64 {
     40.0 + CHARACTER * longest as f64
 }
 
-fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
+fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle, labels: &Labels) {
     let empty = own.is_empty();
-    let across = axis_of(&own.across, range(&own.panel, |point| point.0), 5, 0.03);
-    let up = axis_of(&own.up, range(&own.panel, |point| point.1), 5, 0.1);
+    let (x, y) = own.ranges();
+    let across = axis_of(&own.across, x, 5, 0.03);
+    let up = axis_of(&own.up, y, 5, if own.panel.equal { 0.03 } else { 0.1 });
+    let side = match own.panel.equal {
+        true => within.width.min(within.height),
+        false => within.width,
+    };
+    let (whole, within) = (
+        within,
+        Rectangle {
+            width: side,
+            ..within
+        },
+    );
     let mut frame = Frame { within, across, up };
     if empty {
         frame.across.ticks.clear();
@@ -196,13 +171,9 @@ fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
         }
         return;
     }
-    draw_within(drawing, &inside(panel, &frame), &frame, &LABELS);
-    draw_legend(
-        drawing,
-        &with_short_labels(panel, within.width),
-        &frame,
-        &LABELS,
-    );
+    draw_within(drawing, &inside(panel, &frame), &frame, labels);
+    let legend = with_short_labels(panel, whole.width);
+    draw_legend(drawing, &legend, &whole, labels);
     for (at, text) in &own.texts {
         let (x, y) = frame.place(*at);
         drawing.text_over((x, y + 3.6), (Anchor::Middle, 10.5), text, Ink::Background);
@@ -211,7 +182,7 @@ fn draw_panel(drawing: &mut Drawing, own: &GridPanel, within: Rectangle) {
 
 /// The panel with labels of its legend that end within a width; px.
 fn with_short_labels(panel: &Panel, width: f64) -> Panel {
-    let most = ((width - 24.0) / LABELS.character) as usize;
+    let most = ((width - 24.0) / LABEL_CHARACTER) as usize;
     let mut panel = panel.clone();
     let given = panel.series.iter().map(|own| own.label.clone());
     let given: Vec<String> = given.filter(|own| !own.is_empty()).collect();
@@ -223,91 +194,6 @@ fn with_short_labels(panel: &Panel, width: f64) -> Panel {
         series.points.clear();
     }
     panel
-}
-
-/// The panel without what lies beyond its frame.
-fn inside(panel: &Panel, frame: &Frame) -> Panel {
-    let holds = |axis: &Axis, value: f64| {
-        let room = 1e-9 * (axis.high - axis.low);
-        value >= axis.low - room && value <= axis.high + room
-    };
-    let within = |(x, y): &(f64, f64)| holds(&frame.across, *x) && holds(&frame.up, *y);
-    let mut panel = panel.clone();
-    for series in &mut panel.series {
-        if !series.style.has_ends() {
-            series.points.retain(within);
-        }
-    }
-    panel.marks.retain(|mark| within(&mark.at));
-    panel
-}
-
-fn axis_of(scale: &Scale, (low, high): (f64, f64), ticks: usize, room: f64) -> Axis {
-    match scale {
-        Scale::Names(names) => Axis {
-            low: -0.6,
-            high: names.len().max(1) as f64 - 0.4,
-            ticks: (0..names.len()).map(|place| place as f64).collect(),
-            labels: fitting(names, CHARACTER * LONGEST_NAME as f64),
-            power: 0,
-        },
-        Scale::Between(low, high) => axis(*low, *high, ticks),
-        Scale::Reaching(from, to) => {
-            let (low, high) = (low.min(*from), high.max(*to));
-            let room = room * (high - low);
-            // An end that was asked for, such as zero, is the end.
-            let low = if low < *from { low - room } else { low };
-            let high = if high > *to { high + room } else { high };
-            axis(low, high, ticks)
-        }
-        Scale::Data => {
-            let room = room * (high - low);
-            axis(low - room, high + room, ticks)
-        }
-    }
-}
-
-/// Names cut so that each fits into a width; px.
-fn fitting(names: &[String], width: f64) -> Vec<String> {
-    let most = ((width / CHARACTER) as usize).clamp(2, LONGEST_NAME);
-    cut_apart(names, most)
-}
-
-/// Names of at most so many characters. What all of them begin or end with is left out where they
-/// could not be told apart otherwise.
-fn cut_apart(names: &[String], most: usize) -> Vec<String> {
-    let all_cut = |names: &[String]| names.iter().map(|own| cut(own, most)).collect::<Vec<_>>();
-    let different = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len();
-    let own = all_cut(names);
-    if different(&own) == different(names) {
-        return own;
-    }
-    let all: Vec<Vec<char>> = names.iter().map(|name| name.chars().collect()).collect();
-    let shortest = all.iter().map(Vec::len).min().unwrap_or(0);
-    let first = &all[0];
-    // Words stay whole.
-    let same = |at: &dyn Fn(&[char], usize) -> char, most: usize| {
-        let alike = |place: &usize| all.iter().all(|own| at(own, *place) == at(first, *place));
-        let alike = (0..most).take_while(alike).count();
-        let between = |place: &usize| !at(first, place - 1).is_alphanumeric();
-        (1..=alike).rev().find(between).unwrap_or(0)
-    };
-    let front = same(&|own, place| own[place], shortest);
-    let back = same(&|own, place| own[own.len() - 1 - place], shortest - front);
-    let inner = all.iter().map(|own| {
-        let mark = |any: usize| if any > 0 { "…" } else { "" };
-        let inner: String = own[front..own.len() - back].iter().collect();
-        format!("{}{inner}{}", mark(front), mark(back))
-    });
-    all_cut(&inner.collect::<Vec<_>>())
-}
-
-/// A text of at most so many characters.
-fn cut(text: &str, most: usize) -> String {
-    match text.chars().count() > most {
-        true => text.chars().take(most.max(1) - 1).chain(['…']).collect(),
-        false => text.to_owned(),
-    }
 }
 
 /// A text in lines of at most so many characters, broken between words.
@@ -345,7 +231,7 @@ mod tests {
             size: (200.0, 180.0),
             notes: vec!["a note".to_owned()],
         };
-        drawing_of_grid(&grid).svg(&LIGHT)
+        drawing_of_grid(&grid, None).svg(&LIGHT)
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use crate::files::NamedFigure;
 use crate::theme::{DARK, LIGHT, PAGE, declarations};
-use crate::xy::element_of_figure;
+use crate::width::Width;
+use crate::xy::elements_of_figure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::text::table::Cells;
@@ -80,16 +81,21 @@ th, td { padding: 0.15rem 0.7rem 0.15rem 0; text-align: right; white-space: nowr
 th:first-child, td:first-child { text-align: left; }
 thead th { border-bottom: 1px solid var(--figure-frame); }
 td.words { text-align: left; }
-figure { margin: 1.5rem 0; break-inside: avoid; }
-figure svg { max-width: 100%; height: auto; }
-figcaption { font-size: 0.85rem; }
+figure { margin: 1.5rem 0; }
+figure svg { display: block; max-width: 100%; height: auto; }
+figcaption { font-size: 0.85rem; margin-top: 0.4rem; }
 pre { overflow-x: auto; font-size: 0.75rem; border: 1px solid var(--figure-grid); padding: 0.6rem; }
 code { font-size: 0.85em; overflow-wrap: anywhere; }
-@media print { body { max-width: none; padding: 0; font-size: 10pt; } nav { display: none; }
-  h2, caption, thead { break-after: avoid; } tr { break-inside: avoid; } pre { white-space: pre-wrap; }
-  .table { overflow: visible; } table { font-size: 6.5pt; }
+@page { margin: 16mm 18mm; }
+@media print { body { max-width: none; padding: 0; font-size: 10pt; line-height: 1.35; }
+  nav { display: none; } p, li { orphans: 3; widows: 3; } h2 { margin-top: 1.2rem; }
+  h2, caption, thead { break-after: avoid; } thead { display: table-header-group; }
+  tr { break-inside: avoid; } pre { white-space: pre-wrap; font-size: 8pt; overflow: visible; }
+  .table { overflow: visible; } table { font-size: 7.5pt; }
   th, td { white-space: normal; padding-right: 0.5em; }
-  figure svg { width: auto; max-height: 22cm; } }
+  figure { margin: 0.8rem 0; } figure.short { break-inside: avoid; }
+  figure svg { break-inside: avoid; break-after: avoid; }
+  figcaption { break-before: avoid; break-inside: avoid; font-size: 8.5pt; } }
 ";
 
 /// The report as an HTML file.
@@ -130,7 +136,9 @@ pub fn html_of_report(report: &Report) -> String {
                 main {
                     (findings(report))
                     @for (index, part) in report.sections.iter().enumerate() {
-                        section id={ "part-" (index + 1) } { (section(part)) }
+                        section id={ "part-" (index + 1) } {
+                            (section(part, numbers_before(&report.sections[..index])))
+                        }
                     }
                 }
             }
@@ -168,16 +176,27 @@ fn findings(report: &Report) -> Markup {
     }
 }
 
-fn section(section: &Section) -> Markup {
+/// Tables and figures of sections: what comes next is numbered after them.
+fn numbers_before(sections: &[Section]) -> (usize, usize) {
+    let tables = sections.iter().map(|own| own.tables.len()).sum();
+    (tables, sections.iter().map(|own| own.figures.len()).sum())
+}
+
+/// * `tables`, `figures`: how many come before it
+fn section(section: &Section, (tables, figures): (usize, usize)) -> Markup {
     html! {
         h2 { (section.heading) }
         @for paragraph in &section.paragraphs { p { (paragraph) } }
         @if let Some(listing) = &section.listing { pre { (listing) } }
-        @for table in &section.tables { (table_markup(table)) }
-        @for figure in &section.figures {
-            figure id=(figure.name) {
-                (PreEscaped(element_of_figure(&figure.figure, &PAGE)))
+        @for (place, table) in section.tables.iter().enumerate() {
+            (table_markup(table, tables + place + 1))
+        }
+        @for (place, figure) in section.figures.iter().enumerate() {
+            @let parts = elements_of_figure(&figure.figure, &PAGE, Width::PAGE);
+            figure id=(figure.name) class=[(parts.len() == 1).then_some("short")] {
+                @for part in parts { (PreEscaped(part)) }
                 figcaption {
+                    strong { "Figure " (figures + place + 1) ". " }
                     (figure.caption) " Data: " code { "figures/" (figure.name) ".csv" } "."
                 }
             }
@@ -185,13 +204,13 @@ fn section(section: &Section) -> Markup {
     }
 }
 
-fn table_markup(table: &CaptionedTable) -> Markup {
+fn table_markup(table: &CaptionedTable, number: usize) -> Markup {
     let cells = &table.cells;
     html! {
         // Reached by the keyboard, so that a wide table can be scrolled without a mouse.
         div class="table" tabindex="0" role="region" aria-label=(table.caption) {
             table {
-                caption { (table.caption) }
+                caption { "Table " (number) ". " (table.caption) }
                 thead { tr { @for heading in &cells.header { th scope="col" { (heading) } } } }
                 tbody {
                     @for row in &cells.rows {

@@ -116,6 +116,8 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Named places.
     pub marks: Vec<Mark>,
+    /// Whether both axes show one quantity: then they have one range and one scale.
+    pub equal: bool,
 }
 
 impl Panel {
@@ -129,6 +131,16 @@ impl Panel {
             y_unit: shown(y.1),
             series,
             marks: Vec::new(),
+            equal: false,
+        }
+    }
+
+    /// The panel with the same range and scale on both axes.
+    #[must_use]
+    pub fn with_equal_axes(self) -> Self {
+        Self {
+            equal: true,
+            ..self
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Panels drawn into their frames: series, named places, legends.
 
-use crate::frame::Frame;
+use crate::frame::{Frame, Rectangle};
 use crate::panel::{Panel, Series, Side, Style};
 use crate::svg::{Anchor, Drawing, Ink};
-use crate::theme::SERIES;
+use crate::text_width::{cut_to, text_width};
 
 /// A tint narrower than this could not be seen; px.
 const LEAST_TINT: f64 = 2.0;
@@ -11,18 +11,19 @@ const LEAST_TINT: f64 = 2.0;
 /// Height of a line of the legend; px.
 const LEGEND_LINE: f64 = 15.0;
 
+/// How much wider text is where a machine has none of the fonts that are asked for; 1.
+const OTHER_FONT: f64 = 1.1;
+
 /// Fewer points than this are drawn larger.
 const FEW_POINTS: usize = 150;
 
 /// More points than this are thinned to what the eye can tell.
-const MOST_POINTS: usize = 4000;
+pub(crate) const MOST_POINTS: usize = 4000;
 
 /// Sizes of the labels within a panel; px.
 pub(crate) struct Labels {
     /// Size of the letters.
     pub size: f64,
-    /// Width of a character.
-    pub character: f64,
     /// Least distance of the lines of two labels that stand above each other.
     pub line: f64,
     /// Radius of the ring around a named place.
@@ -33,6 +34,62 @@ pub(crate) struct Labels {
     pub alike: bool,
     /// Whether all points are drawn but those of lines: the caller has thinned them.
     pub whole: bool,
+    /// Most points of a series, where they are thinned here.
+    pub most: usize,
+    /// Colours of the lines that a legend names, each once: the first is a full line, the others
+    /// have dashes of their own.
+    pub lines: Vec<usize>,
+}
+
+/// Colours of the named lines of some panels, in the order in which they come.
+pub(crate) fn named_lines<'a>(panels: impl Iterator<Item = &'a Panel>) -> Vec<usize> {
+    let mut found = Vec::new();
+    for panel in panels {
+        for (index, own) in labelled(panel) {
+            let colour = own.colour.unwrap_or(index);
+            if own.style == Style::Line && !found.contains(&colour) {
+                found.push(colour);
+            }
+        }
+    }
+    found
+}
+
+/// What a legend says of a series.
+type Entry = (String, Style, usize);
+
+fn entries(panel: &Panel) -> Vec<Entry> {
+    let entry = |(index, own): (usize, &Series)| {
+        (own.label.clone(), own.style, own.colour.unwrap_or(index))
+    };
+    labelled(panel).into_iter().map(entry).collect()
+}
+
+/// A panel with nothing but a legend: what the legends of several of these panels say, once.
+pub(crate) fn shared_legend(panels: &[&Panel]) -> Panel {
+    let of_panels: Vec<Vec<Entry>> = panels.iter().map(|own| entries(own)).collect();
+    let mut shared: Vec<Series> = Vec::new();
+    for entry in of_panels.iter().flatten() {
+        let again = of_panels.iter().filter(|own| own.contains(entry)).count() > 1;
+        let (label, style, colour) = entry;
+        let new = !shared
+            .iter()
+            .any(|own| own.label == *label && own.style == *style);
+        if again && new {
+            shared.push(Series::new(label, *style, Vec::new()).coloured(*colour));
+        }
+    }
+    Panel::new(("", ""), ("", ""), shared)
+}
+
+/// The legend of a panel without what a shared one says, its labels no wider than this; px.
+pub(crate) fn own_legend(panel: &Panel, shared: &Panel, size: f64, width: f64) -> Panel {
+    let said = entries(shared);
+    let own = entries(panel).into_iter().filter(|own| !said.contains(own));
+    let series = own.map(|(label, style, colour)| {
+        Series::new(cut_to(&label, size, width - 24.0), style, Vec::new()).coloured(colour)
+    });
+    Panel::new(("", ""), ("", ""), series.collect())
 }
 
 fn labelled(panel: &Panel) -> Vec<(usize, &Series)> {
@@ -48,7 +105,7 @@ fn legend_places(panel: &Panel, (left, right): (f64, f64), labels: &Labels) -> V
     labelled(panel)
         .iter()
         .map(|(_, series)| {
-            let width = 34.0 + labels.character * series.label.chars().count() as f64;
+            let width = 36.0 + OTHER_FONT * text_width(&series.label, labels.size);
             if x + width > right && x > left {
                 (line, x) = (line + 1, left);
             }
@@ -83,6 +140,16 @@ pub(crate) fn range(panel: &Panel, pick: impl Fn(&(f64, f64)) -> f64) -> (f64, f
     }
 }
 
+/// What a panel shows of each axis: the same of both where they are equal.
+pub(crate) fn shown_ranges(panel: &Panel) -> ((f64, f64), (f64, f64)) {
+    let (x, y) = (range(panel, |point| point.0), range(panel, |point| point.1));
+    let both = (x.0.min(y.0), x.1.max(y.1));
+    match panel.equal {
+        true => (both, both),
+        false => (x, y),
+    }
+}
+
 /// Draws the series and the named places of a panel into its frame.
 pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labels) {
     let within = &frame.within;
@@ -100,13 +167,14 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
     let many = (labels.alike && longest >= FEW_POINTS).then_some(labels.dots.1);
     let labels = &Labels {
         dots: (many.unwrap_or(labels.dots.0), labels.dots.1),
+        lines: labels.lines.clone(),
         ..*labels
     };
     for drawn in 0..=4 {
         let series = panel.series.iter().enumerate();
         for (index, series) in series.filter(|(_, s)| layer(s) == drawn) {
             let index = series.colour.unwrap_or(index);
-            let points: Vec<(f64, f64)> = thinned(series, labels.whole)
+            let points: Vec<(f64, f64)> = thinned(series, labels.whole, labels.most)
                 .filter(|(x, y)| x.is_finite() && y.is_finite())
                 .map(|point| frame.place(point))
                 .collect();
@@ -140,17 +208,18 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
 
 /// Named places. Where labels would cover each other, the first is shown; the data have all.
 fn draw_marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labels) {
-    let (left, right) = (frame.within.left, frame.within.right());
+    let (left, right, top) = (frame.within.left, frame.within.right(), frame.within.top);
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
     for mark in &panel.marks {
         let at = frame.place(mark.at);
         drawing.ring(at, labels.ring, Ink::Text);
-        let length = labels.character * mark.label.chars().count() as f64;
+        let length = text_width(&mark.label, labels.size);
         let place = |side: Side| {
             let (x, y, anchor) = match side {
                 Side::AboveLeft => (at.0 - 9.0, at.1 - 7.0, Anchor::End),
                 Side::BelowRight => (at.0 + 9.0, at.1 + 13.0, Anchor::Start),
             };
+            let y = y.clamp(top + 0.9 * labels.size, frame.within.bottom() - 3.0);
             // A label that would leave the panel moves to the other side.
             let (x, anchor) = match anchor {
                 Anchor::End if x - length < left => (at.0 + 9.0, Anchor::Start),
@@ -194,10 +263,15 @@ fn draw_marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labe
     }
 }
 
-/// Draws the legend of a panel above its frame.
-pub(crate) fn draw_legend(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labels) {
-    let ends = (frame.within.left, frame.within.right());
-    let base = frame.within.top - legend_height(panel, ends, labels) + 4.0;
+/// Draws the legend of a panel above a rectangle, as wide as it.
+pub(crate) fn draw_legend(
+    drawing: &mut Drawing,
+    panel: &Panel,
+    below: &Rectangle,
+    labels: &Labels,
+) {
+    let ends = (below.left, below.right());
+    let base = below.top - legend_height(panel, ends, labels) + 4.0;
     let places = legend_places(panel, ends, labels);
     for ((index, series), (line, x)) in labelled(panel).into_iter().zip(places) {
         let index = series.colour.unwrap_or(index);
@@ -226,8 +300,8 @@ pub(crate) fn draw_legend(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
     }
 }
 
-/// * `index`: position of the series, which has its colour; when colours repeat,
-///   lines are dashed
+/// * `index`: position of the series, which has its colour, the shape of its dots and the dashes of
+///   its line
 fn draw_series(
     drawing: &mut Drawing,
     points: &[(f64, f64)],
@@ -242,8 +316,10 @@ fn draw_series(
             let [from, to] = [points[0], points[1]];
             drawing.tint(from, (to.0 - from.0, to.1 - from.1), ink);
         }
-        Style::Line if index >= SERIES => drawing.dashed(points, ink, 1.4),
-        Style::Line => drawing.polyline(points, ink, 1.4),
+        Style::Line => {
+            let among = labels.lines.iter().position(|own| *own == index);
+            drawing.patterned(points, among.unwrap_or(0), ink, 1.4);
+        }
         Style::Broad => drawing.polyline(points, ink, 4.0),
         Style::Band => drawing.tinted_shape(points, ink),
         Style::Bars | Style::LevelBars => {
@@ -261,7 +337,7 @@ fn draw_series(
             let (few, many) = labels.dots;
             let radius = if points.len() < FEW_POINTS { few } else { many };
             for point in points {
-                drawing.dot(*point, radius, ink);
+                drawing.mark(*point, radius, index, ink);
             }
         }
     }
@@ -269,9 +345,13 @@ fn draw_series(
 
 /// Every point, or so many that the eye sees no difference: of a line the lowest
 /// and the highest of each stretch, so that no peak is lost; pairs stay together.
-fn thinned(series: &Series, whole: bool) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
+fn thinned(series: &Series, whole: bool, most: usize) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
     let points = &series.points;
-    let step = points.len().div_ceil(MOST_POINTS).max(1);
+    let most = match series.style {
+        Style::Dots => most,
+        _ => MOST_POINTS,
+    };
+    let step = points.len().div_ceil(most).max(1);
     match series.style {
         Style::Line if step > 1 => Box::new(points.chunks(2 * step).flat_map(extremes)),
         _ if whole || step == 1 => Box::new(points.iter().copied()),
@@ -311,7 +391,7 @@ mod tests {
             colour: None,
             points,
         };
-        let drawn: Vec<(f64, f64)> = thinned(&series, false).collect();
+        let drawn: Vec<(f64, f64)> = thinned(&series, false, MOST_POINTS).collect();
         assert!(drawn.len() <= MOST_POINTS && drawn.contains(&(12_345.0, 9.0)));
         assert!(drawn.windows(2).all(|pair| pair[0].0 <= pair[1].0));
         // Of bars whole ones are left out, and none where the caller has thinned them.
@@ -319,9 +399,9 @@ mod tests {
             style: Style::Bars,
             ..series
         };
-        let drawn: Vec<(f64, f64)> = thinned(&bars, false).collect();
+        let drawn: Vec<(f64, f64)> = thinned(&bars, false, MOST_POINTS).collect();
         assert!(drawn.len() <= MOST_POINTS);
         assert!(drawn.chunks(2).all(|own| own[1].0 == own[0].0 + 1.0));
-        assert_eq!(thinned(&bars, true).count(), 20_000);
+        assert_eq!(thinned(&bars, true, MOST_POINTS).count(), 20_000);
     }
 }

@@ -3,6 +3,9 @@
 #[cfg(feature = "png")]
 mod drawn;
 
+#[cfg(feature = "png")]
+pub(crate) use drawn::{FONT, OPTIONS};
+
 use windfall_files::error::Error;
 
 /// Dots of a PNG per px of the drawing: 300 per inch, where a px is 1/96 inch.

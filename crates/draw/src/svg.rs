@@ -1,7 +1,10 @@
 //! A small writer of SVG: what the figures of windfall are drawn with.
 
-use crate::colour_map::{Rgb, css, mixed};
+use crate::colour_map::{Rgb, css};
+use crate::raised::{RAISED_SIZE, parts};
+use crate::shapes::{PATTERNS, SHAPES, shading};
 use crate::theme::{SCALE, SERIES, Theme};
+use crate::width::{LEAST_LINE, LETTERS, Width, mm_text};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -71,6 +74,11 @@ fn colour_of(mark: char, theme: &Theme) -> Option<&'static str> {
 pub struct Drawing {
     width: f64,
     height: f64,
+    /// Whether its size on paper is given: then all letters have one size, and lines are not
+    /// thinner than a press can print.
+    paper: bool,
+    /// Part at the top that is not shown: that of a title which is left out; px.
+    above: f64,
     body: String,
     /// Colours of balls: each has a shading of its own.
     balls: BTreeSet<Rgb>,
@@ -82,8 +90,45 @@ impl Drawing {
         Self {
             width,
             height,
+            paper: false,
+            above: 0.0,
             body: String::new(),
             balls: BTreeSet::new(),
+        }
+    }
+
+    /// An empty drawing that is printed at a width; of [`new`](Self::new) where none is given.
+    ///
+    /// * `plain`: width where none is given; px
+    pub fn at_width(width: Option<Width>, plain: f64, height: f64) -> Self {
+        let drawing = Self::new(width.map_or(plain, Width::px), height);
+        Self {
+            paper: width.is_some(),
+            ..drawing
+        }
+    }
+
+    /// Draws the title of a figure at its top. On paper there is none, as the caption says it, and
+    /// its room is left out.
+    ///
+    /// * `room`: how far down the title reaches; px
+    pub fn title(&mut self, left: f64, room: f64, title: &str) {
+        match self.paper {
+            true => self.above = room,
+            false => self.text((left, 22.0), Anchor::Start, 13.0, title),
+        }
+    }
+
+    /// Size of letters that are drawn with this one; px.
+    pub fn letters(&self, size: f64) -> f64 {
+        if self.paper { LETTERS } else { size }
+    }
+
+    /// Width of lines that are drawn with this one; px.
+    fn stroke(&self, width: f64) -> f64 {
+        match self.paper {
+            true => width.max((LEAST_LINE * 1e3).ceil() / 1e3),
+            false => width,
         }
     }
 
@@ -107,7 +152,18 @@ impl Drawing {
         self.line(points, r#" stroke-dasharray="5 3""#, ink, width);
     }
 
+    /// A line through points in the dashes of this number, so that lines can be told apart without
+    /// colours; 0 is a full line.
+    pub fn patterned(&mut self, points: &[(f64, f64)], pattern: usize, ink: Ink, width: f64) {
+        let dashes = match PATTERNS[pattern % PATTERNS.len()] {
+            "" => String::new(),
+            dashes => format!(r#" stroke-dasharray="{dashes}""#),
+        };
+        self.line(points, &dashes, ink, width);
+    }
+
     fn line(&mut self, points: &[(f64, f64)], dashes: &str, ink: Ink, width: f64) {
+        let width = self.stroke(width);
         let look = format!(
             r#"fill="none"{dashes} stroke="{}" stroke-width="{width}" stroke-linejoin="round""#,
             ink.mark()
@@ -146,8 +202,23 @@ impl Drawing {
         );
     }
 
+    /// A filled mark of this shape, as large as a [`dot`](Self::dot): series can be told apart
+    /// without colours. 0 is a dot.
+    pub fn mark(&mut self, at: (f64, f64), radius: f64, shape: usize, ink: Ink) {
+        let corners = match SHAPES[shape % SHAPES.len()] {
+            [] => return self.dot(at, radius, ink),
+            corners => corners.iter(),
+        };
+        let corners: Vec<(f64, f64)> = corners
+            .map(|(x, y)| (at.0 + radius * x, at.1 + radius * y))
+            .collect();
+        let look = format!(r#"fill="{}""#, ink.mark());
+        self.through("polygon", &corners, 2, &look);
+    }
+
     /// A text; what XML would misread is escaped.
     pub fn text(&mut self, at: (f64, f64), anchor: Anchor, size: f64, text: &str) {
+        let size = self.letters(size);
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -164,10 +235,19 @@ impl Drawing {
 
     /// A text turned to read upwards, about its middle.
     pub fn turned_text(&mut self, at: (f64, f64), size: f64, text: &str) {
-        let (x, y) = at;
+        self.upwards(at, "middle", size, text);
+    }
+
+    /// A text turned to read upwards, which ends at its place.
+    pub fn steep_text(&mut self, at: (f64, f64), size: f64, text: &str) {
+        self.upwards(at, "end", size, text);
+    }
+
+    fn upwards(&mut self, (x, y): (f64, f64), anchor: &str, size: f64, text: &str) {
+        let size = self.letters(size);
         let _ = writeln!(
             self.body,
-            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="middle" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
+            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" font-size="{size}" transform="rotate(-90 {x:.2} {y:.2})">{}</text>"#,
             set_text(text, size)
         );
     }
@@ -205,9 +285,10 @@ impl Drawing {
     /// A filled shape with corners at points, within a thin line.
     pub fn facet(&mut self, points: &[(f64, f64)], fill: Ink, edge: Ink) {
         let look = format!(
-            r#"fill="{}" stroke="{}" stroke-width="0.5" stroke-linejoin="round""#,
+            r#"fill="{}" stroke="{}" stroke-width="{}" stroke-linejoin="round""#,
             fill.mark(),
-            edge.mark()
+            edge.mark(),
+            self.stroke(0.5)
         );
         self.through("polygon", points, 1, &look);
     }
@@ -296,15 +377,24 @@ impl Drawing {
     /// The whole as an element of a page, described by `label` for those who do not
     /// see it; "" for a picture that is described elsewhere.
     pub fn element(&self, theme: &Theme, label: &str) -> String {
-        let (width, height) = (self.width, self.height);
+        let (width, height, above) = (self.width, self.height - self.above, self.above);
+        let size = |length: f64| match self.paper {
+            true => mm_text(length),
+            false => length.to_string(),
+        };
+        let at = match above {
+            0.0 => String::new(),
+            above => format!(r#" y="{above}""#),
+        };
+        let (across, down) = (size(width), size(height));
         let described = match label {
             "" => String::new(),
             label => format!(r#" role="img" aria-label="{}""#, escaped(label)),
         };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
-             <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}\" height=\"{down}\" \
+             viewBox=\"0 {above} {width} {height}\" font-family=\"{FONTS}\" fill=\"{}\"{described}>\n\
+             <rect{at} width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
             theme.text, theme.background
         );
         for colour in &self.balls {
@@ -318,28 +408,6 @@ impl Drawing {
         }
         svg + "</svg>\n"
     }
-}
-
-/// How a ball of a colour is lit: where, and how far towards white or black.
-fn shading(colour: Rgb) -> String {
-    const WHITE: Rgb = [255; 3];
-    const BLACK: Rgb = [0; 3];
-    let stops = [
-        (0.0, WHITE, 0.55),
-        (0.2, WHITE, 0.2),
-        (0.5, WHITE, 0.0),
-        (0.82, BLACK, 0.2),
-        (1.0, BLACK, 0.5),
-    ];
-    let mut text = format!(
-        r#"<radialGradient id="ball-{}" cx="0.5" cy="0.5" r="0.5" fx="0.36" fy="0.3">"#,
-        &css(colour)[1..]
-    );
-    for (at, towards, part) in stops {
-        let own = css(mixed(colour, towards, part));
-        let _ = write!(text, r#"<stop offset="{at}" stop-color="{own}"/>"#);
-    }
-    text + "</radialGradient>\n"
 }
 
 /// Text escaped for XML; what XML cannot hold (control characters, U+FFFE and U+FFFF)
@@ -361,49 +429,6 @@ fn escaped(text: &str) -> String {
     whole
 }
 
-/// Characters above the line with those that they are raised from. Few fonts have
-/// all of them, and of different heights.
-const RAISED: [(char, char); 11] = [
-    ('⁰', '0'),
-    ('¹', '1'),
-    ('²', '2'),
-    ('³', '3'),
-    ('⁴', '4'),
-    ('⁵', '5'),
-    ('⁶', '6'),
-    ('⁷', '7'),
-    ('⁸', '8'),
-    ('⁹', '9'),
-    ('⁻', '\u{2212}'),
-];
-
-/// Text in parts, each with whether it is raised: raised characters, and numbers
-/// behind a "^".
-fn parts(text: &str) -> Vec<(String, bool)> {
-    let mut parts: Vec<(String, bool)> = Vec::new();
-    let mut push = |c: char, raised: bool| match parts.last_mut() {
-        Some((part, of)) if *of == raised => part.push(c),
-        _ => parts.push((c.to_string(), raised)),
-    };
-    let mut exponent = false;
-    let mut characters = text.chars().peekable();
-    while let Some(c) = characters.next() {
-        let number = |c: &char| c.is_ascii_digit() || ".-".contains(*c);
-        if c == '^' && characters.peek().is_some_and(number) {
-            exponent = true;
-            continue;
-        }
-        exponent &= number(&c);
-        let raised = RAISED.iter().find(|(from, _)| *from == c);
-        match (raised, exponent) {
-            (Some((_, to)), _) => push(*to, true),
-            (None, true) => push(if c == '-' { '\u{2212}' } else { c }, true),
-            (None, false) => push(c, false),
-        }
-    }
-    parts
-}
-
 /// Most characters of a text that is drawn; further ones would lie outside of the picture, and
 /// the time to lay them out grows with their square.
 const LONGEST: usize = 500;
@@ -422,7 +447,7 @@ fn set_text(text: &str, size: f64) -> String {
                 whole,
                 r#"<tspan dy="{:.2}" font-size="{:.2}">{part}</tspan>"#,
                 -rise,
-                0.72 * size
+                RAISED_SIZE * size
             ),
             // Back to the line.
             (false, true) => write!(whole, r#"<tspan dy="{rise:.2}">{part}</tspan>"#),
@@ -436,6 +461,7 @@ fn set_text(text: &str, size: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raised::RAISED;
     use crate::theme::{DARK, LIGHT};
     use proptest::prelude::Strategy;
 

@@ -2,10 +2,15 @@
 
 use crate::axis::axis;
 use crate::frame::{Frame, Rectangle};
+use crate::grid_panel::GridPanel;
 pub use crate::panel::{Mark, Panel, Series, Side, Style};
-use crate::panel_drawing::{Labels, draw_legend, draw_within, legend_height, range};
+use crate::panel_drawing::{
+    Labels, MOST_POINTS, draw_legend, draw_within, legend_height, named_lines, shown_ranges,
+};
+use crate::paper::{Part, drawing_on_paper};
 use crate::svg::{Anchor, Drawing};
 use crate::theme::Theme;
+use crate::width::Width;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 
@@ -17,16 +22,19 @@ const RIGHT: f64 = 22.0;
 const TOP: f64 = 64.0;
 const BOTTOM: f64 = 50.0;
 
-/// Labels of a panel as wide as the page.
-const LABELS: Labels = Labels {
-    size: 11.0,
-    character: 6.4,
-    line: 12.0,
-    ring: 4.5,
-    dots: (2.3, 1.5),
-    alike: false,
-    whole: false,
-};
+/// Labels of panels as wide as the page.
+fn labels_of(figure: &Figure) -> Labels {
+    Labels {
+        size: 11.0,
+        line: 12.0,
+        ring: 4.5,
+        dots: (2.3, 1.5),
+        alike: false,
+        whole: false,
+        most: MOST_POINTS,
+        lines: named_lines(figure.panels.iter()),
+    }
+}
 
 /// A figure of one or more panels, one below the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,17 +55,45 @@ impl Figure {
 
 /// Draws a figure as an SVG file.
 pub fn svg_of_figure(figure: &Figure, theme: &Theme) -> String {
-    drawing_of_figure(figure).svg(theme)
+    drawing_of_figure(figure, None).svg(theme)
 }
 
-/// Draws a figure as an element of a page; its title describes it.
-pub fn element_of_figure(figure: &Figure, theme: &Theme) -> String {
-    drawing_of_figure(figure).element(theme, &figure.title)
+/// Height of panels in a page, of which two rows and a caption fill half of a sheet; px.
+const LOW: f64 = 100.0;
+
+/// Panels of a page's figure that stay together; more are parts between which a page may end.
+const TOGETHER: usize = 4;
+
+/// Draws a figure as elements of a page that is printed at a width, one below the other; its title
+/// describes them.
+pub fn elements_of_figure(figure: &Figure, theme: &Theme, width: Width) -> Vec<String> {
+    let labels = &labels_of(figure);
+    let panels = panels_of(figure);
+    let part = |(place, own): (usize, &[GridPanel])| {
+        let part = Part {
+            first: place * TOGETHER,
+            whole: panels.len(),
+            highest: if panels.len() > 1 { LOW } else { HEIGHT },
+        };
+        drawing_on_paper(own, part, &[], labels, width).element(theme, &figure.title)
+    };
+    panels.chunks(TOGETHER).enumerate().map(part).collect()
 }
 
-/// Draws a figure, whose colours a theme names later.
-pub fn drawing_of_figure(figure: &Figure) -> Drawing {
-    let legend = |panel: &Panel| legend_height(panel, (LEFT, WIDTH - RIGHT), &LABELS);
+fn panels_of(figure: &Figure) -> Vec<GridPanel> {
+    let panels = figure.panels.iter();
+    panels.map(|own| GridPanel::new("", own.clone())).collect()
+}
+
+/// Draws a figure, whose colours a theme names later: at a width on paper, where it has no title,
+/// or with panels as wide as a screen shows them.
+pub fn drawing_of_figure(figure: &Figure, paper: Option<Width>) -> Drawing {
+    let labels = &labels_of(figure);
+    if let Some(width) = paper {
+        let panels = panels_of(figure);
+        return drawing_on_paper(&panels, Part::all(panels.len()), &[], labels, width);
+    }
+    let legend = |panel: &Panel| legend_height(panel, (LEFT, WIDTH - RIGHT), labels);
     let rows: Vec<f64> = figure.panels.iter().map(legend).collect();
     let room = |legend: &f64| legend + HEIGHT + BOTTOM + 8.0;
     let height = 34.0 + rows.iter().map(room).sum::<f64>();
@@ -65,25 +101,34 @@ pub fn drawing_of_figure(figure: &Figure) -> Drawing {
     drawing.text((LEFT, 22.0), Anchor::Start, 13.0, &figure.title);
     let mut top = 34.0;
     for (panel, legend) in figure.panels.iter().zip(&rows) {
-        draw_panel(&mut drawing, panel, top + legend);
+        draw_panel(&mut drawing, panel, top + legend, labels);
         top += room(legend);
     }
     drawing
 }
 
-fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
+fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64, labels: &Labels) {
     let widened = |(low, high): (f64, f64), part: f64| {
         (low - part * (high - low), high + part * (high - low))
     };
-    let (low, high) = widened(range(panel, |p| p.0), 0.02);
-    let horizontal = axis(low, high, 8);
-    let (low, high) = widened(range(panel, |p| p.1), 0.05);
-    let vertical = axis(low, high, 6);
+    let (across, up) = shown_ranges(panel);
+    let (rooms, ticks) = match panel.equal {
+        true => ((0.03, 0.03), (6, 6)),
+        false => ((0.02, 0.05), (8, 6)),
+    };
+    let (low, high) = widened(across, rooms.0);
+    let horizontal = axis(low, high, ticks.0);
+    let (low, high) = widened(up, rooms.1);
+    let vertical = axis(low, high, ticks.1);
+    let width = match panel.equal {
+        true => HEIGHT,
+        false => WIDTH - RIGHT - LEFT,
+    };
     let frame = Frame {
         within: Rectangle {
             left: LEFT,
             top,
-            width: WIDTH - RIGHT - LEFT,
+            width,
             height: HEIGHT,
         },
         across: horizontal,
@@ -92,8 +137,12 @@ fn draw_panel(drawing: &mut Drawing, panel: &Panel, top: f64) {
     frame.draw_grid(drawing);
     let (x, y) = ((&*panel.x, &*panel.x_unit), (&*panel.y, &*panel.y_unit));
     frame.draw_axes(drawing, x, y, LEFT - 20.0);
-    draw_within(drawing, panel, &frame, &LABELS);
-    draw_legend(drawing, panel, &frame, &LABELS);
+    draw_within(drawing, panel, &frame, labels);
+    let across = Rectangle {
+        width: WIDTH - RIGHT - LEFT,
+        ..frame.within
+    };
+    draw_legend(drawing, panel, &across, labels);
 }
 
 /// What the figure shows, as CSV: one row per point.
@@ -143,6 +192,7 @@ mod tests {
                     at: (1.0, 2.0),
                     side: Side::AboveLeft,
                 }],
+                equal: false,
             }],
         }
     }

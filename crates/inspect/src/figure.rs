@@ -3,7 +3,8 @@
 use windfall_draw::axis::{Axis, axis, unit_label};
 use windfall_draw::curve::{Curve, CurvePoint};
 use windfall_draw::svg::{Anchor, Drawing, Ink};
-use windfall_draw::theme::Theme;
+use windfall_draw::text_width::{cut_to, text_width};
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 
@@ -28,7 +29,9 @@ const DOTS: usize = 150;
 /// Draws the channels of a recording, at most [`MOST_PANELS`] of them.
 ///
 /// Channels that overlap in time share an axis; others have their own.
-pub fn svg_of_curves(title: &str, curves: &[Curve], theme: &Theme) -> String {
+///
+/// * `width`: on paper; as wide as a screen shows it if left out
+pub fn drawing_of_curves(title: &str, curves: &[Curve], width: Option<Width>) -> Drawing {
     let shown = &curves[..curves.len().min(MOST_PANELS)];
     let groups: Vec<&[Curve]> = shown
         .chunk_by(|a, b| a.timed == b.timed && overlap(a, b))
@@ -36,15 +39,18 @@ pub fn svg_of_curves(title: &str, curves: &[Curve], theme: &Theme) -> String {
     let axes = groups.len().max(1) as f64;
     let panels = shown.len().max(1) as f64;
     let height = TOP + panels * (PANEL + GAP) - GAP + axes * BOTTOM;
-    let mut drawing = Drawing::new(WIDTH, height);
-    drawing.text((LEFT, 20.0), Anchor::Start, 13.0, title);
+    let right = width.map_or(WIDTH, Width::px) - RIGHT;
+    let mut drawing = Drawing::at_width(width, WIDTH, height);
+    let room = right - LEFT - 100.0;
+    let title = cut_to(title, drawing.letters(13.0), room);
+    drawing.text((LEFT, 20.0), Anchor::Start, 13.0, &title);
     if shown.len() < curves.len() {
         let more = format!("{} of {} channels", shown.len(), curves.len());
-        drawing.text((WIDTH - RIGHT, 20.0), Anchor::End, 11.0, &more);
+        drawing.text((right, 20.0), Anchor::End, 11.0, &more);
     }
     let (mut top, mut index) = (TOP, 0);
     for group in groups {
-        let time = TimeAxis::of(group);
+        let time = TimeAxis::of(group, right);
         for curve in group {
             panel(&mut drawing, curve, &time, top, Ink::Series(index));
             top += PANEL + GAP;
@@ -53,7 +59,7 @@ pub fn svg_of_curves(title: &str, curves: &[Curve], theme: &Theme) -> String {
         time.labels(&mut drawing, top - GAP);
         top += BOTTOM;
     }
-    drawing.svg(theme)
+    drawing
 }
 
 /// Whether two channels were recorded at the same time, in part.
@@ -75,10 +81,12 @@ struct TimeAxis {
     zero: f64,
     scale: f64,
     title: String,
+    /// Right end of the axis; px.
+    right: f64,
 }
 
 impl TimeAxis {
-    fn of(curves: &[Curve]) -> Self {
+    fn of(curves: &[Curve], right: f64) -> Self {
         let points = || curves.iter().flat_map(|curve| &curve.points);
         let low = points().map(|p| p.x).fold(f64::INFINITY, f64::min);
         let high = points().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max);
@@ -93,12 +101,13 @@ impl TimeAxis {
             span if span < 1.0 => (1e3, "ms"),
             _ => (1.0, "s"),
         };
+        let ticks = ((right - LEFT) / 75.0).round().clamp(3.0, 8.0) as usize;
         // Seconds since 1970, for example, would need ten digits at every tick.
         let zero = match low.abs() > FAR * (high - low) && high > low {
             true => low.floor(),
             false => 0.0,
         };
-        let axis = axis((low - zero) * scale, (high - zero) * scale, 8);
+        let axis = axis((low - zero) * scale, (high - zero) * scale, ticks);
         let name = match timed {
             true => "time",
             false => "sample",
@@ -113,13 +122,14 @@ impl TimeAxis {
             zero,
             scale,
             title,
+            right,
         }
     }
 
     fn place(&self, x: f64) -> f64 {
         let part =
             ((x - self.zero) * self.scale - self.axis.low) / (self.axis.high - self.axis.low);
-        LEFT + part * (WIDTH - LEFT - RIGHT)
+        LEFT + part * (self.right - LEFT)
     }
 
     fn tick(&self, tick: f64) -> f64 {
@@ -135,7 +145,7 @@ impl TimeAxis {
                 label,
             );
         }
-        let middle = 0.5 * (LEFT + WIDTH - RIGHT);
+        let middle = 0.5 * (LEFT + self.right);
         drawing.text((middle, bottom + 33.0), Anchor::Middle, 11.5, &self.title);
     }
 }
@@ -158,7 +168,7 @@ fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, ink: I
     let room = 0.06 * (high - low);
     let values = axis(low - room, high + room, 4);
     let place = |y: f64| top + PANEL * (values.high - y) / (values.high - values.low);
-    let (left, right) = (LEFT, WIDTH - RIGHT);
+    let (left, right) = (LEFT, time.right);
 
     for tick in &time.axis.ticks {
         let x = time.tick(*tick);
@@ -178,12 +188,10 @@ fn panel(drawing: &mut Drawing, curve: &Curve, time: &TimeAxis, top: f64, ink: I
     let said =
         curve.name.contains(&format!("({unit})")) || curve.name.contains(&format!("[{unit}]"));
     let unit = unit_label(if said { "" } else { unit }, values.power);
-    drawing.text(
-        (left, top - 6.0),
-        Anchor::Start,
-        11.5,
-        &format!("{}{unit}", curve.name),
-    );
+    let size = drawing.letters(11.5);
+    let name = cut_to(&curve.name, size, right - left - text_width(&unit, size));
+    let title = format!("{name}{unit}");
+    drawing.text((left, top - 6.0), Anchor::Start, 11.5, &title);
 
     let line = outline(&curve.points, |x| time.place(x), place);
     drawing.polyline(&line, ink, 1.1);
@@ -282,13 +290,15 @@ mod tests {
 
     #[test]
     fn closed_form_no_channels_no_panic() {
-        assert!(svg_of_curves("nothing", &[], &LIGHT).ends_with("</svg>\n"));
+        let svg = drawing_of_curves("nothing", &[], None).svg(&LIGHT);
+        assert!(svg.ends_with("</svg>\n"));
         let empty = Curve {
             name: "x".to_owned(),
             unit: None,
             timed: false,
             points: Vec::new(),
         };
-        assert!(svg_of_curves("empty", &[empty], &LIGHT).contains("sample"));
+        let svg = drawing_of_curves("empty", &[empty], None).svg(&LIGHT);
+        assert!(svg.contains("sample"));
     }
 }

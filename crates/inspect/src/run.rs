@@ -3,7 +3,7 @@
 //! The file is read once, in blocks: memory does not grow with its length.
 
 use crate::envelope::Envelope;
-use crate::figure::{csv_of_curves, svg_of_curves};
+use crate::figure::{csv_of_curves, drawing_of_curves};
 use crate::scan_time::TimeScan;
 use crate::scan_value::ValueScan;
 use serde::Serialize;
@@ -13,6 +13,7 @@ use windfall_campaign::settings::open_options::{OpenRequest, open_options};
 use windfall_draw::curve::{Curve, CurvePoint};
 use windfall_draw::plot::write_plot;
 use windfall_draw::theme::LIGHT;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::inputs::{check_piped, protect};
@@ -170,13 +171,17 @@ pub(crate) fn shown_channels(
     wanted.iter().map(find).collect()
 }
 
-/// Writes a figure of a recording as SVG or PNG, by the ending of its name, and its
+/// Writes a figure of a recording as SVG, PNG or PDF, by the ending of its name, and its
 /// data as CSV beside it; returns the two files.
 ///
 /// # Errors
-/// There is not exactly one recording, its name ends neither in ".svg" nor in ".png",
-/// or a file cannot be written.
-pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf; 2], Error> {
+/// There is not exactly one recording, its name has another ending than ".svg", ".png"
+/// and ".pdf", or a file cannot be written.
+pub fn write_figure(
+    path: &Path,
+    inspections: &[Inspection],
+    width: Option<Width>,
+) -> Result<[PathBuf; 2], Error> {
     let unusable =
         |problem: &str| unusable(format!("--plot {}", path.display()), problem.to_owned());
     let [inspection] = inspections else {
@@ -186,9 +191,9 @@ pub fn write_figure(path: &Path, inspections: &[Inspection]) -> Result<[PathBuf;
     };
     let name = Path::new(&inspection.file).file_name();
     let title = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let svg = svg_of_curves(&title, &inspection.curves, &LIGHT);
+    let svg = drawing_of_curves(&title, &inspection.curves, width).svg(&LIGHT);
     let data = csv_of_curves(&inspection.curves)?;
-    write_plot("--plot", path, svg, &data)
+    write_plot("--plot", path, &svg, &data)
 }
 
 /// What one pass over a channel has found.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 
 /// Sizes of the studies, and what is wanted of them.
 #[derive(Clone, Debug, Default)]
@@ -76,9 +77,9 @@ pub struct PlanOptions {
         arg(long, value_name = "COST", allow_negative_numbers = true)
     )]
     pub budget: Option<f64>,
-    /// Draw power or half-width against the number of fruit (SVG or PNG, by its ending), with
+    /// Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its ending), with
     /// its data (CSV, same name)
-    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.svg|FILE.png", value_hint = clap::ValueHint::FilePath))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.svg|FILE.png|FILE.pdf", value_hint = clap::ValueHint::FilePath))]
     pub figure: Option<PathBuf>,
     /// Colours of the figure
     #[cfg_attr(
@@ -86,6 +87,12 @@ pub struct PlanOptions {
         arg(long, value_enum, default_value_t, requires = "figure")
     )]
     pub theme: FigureTheme,
+    /// Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "LENGTH", requires = "figure")
+    )]
+    pub width: Option<Width>,
 }
 
 /// How a simulation is run.

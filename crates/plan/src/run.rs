@@ -11,7 +11,7 @@ use crate::simulated::{coverage_findings, failed_findings};
 use crate::sizes::{Sizes, sizes, stepped_over};
 use crate::text::impacts_text;
 use windfall_draw::plot::write_plot;
-use windfall_draw::xy::{csv_of_figure, svg_of_figure};
+use windfall_draw::xy::{csv_of_figure, drawing_of_figure};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
@@ -59,8 +59,8 @@ pub(crate) fn plan(question: &dyn Question, options: &PlanOptions) -> Result<Pla
     };
     if let Some(path) = &options.figure {
         let figure = figure_of_plan(&outcome);
-        let svg = svg_of_figure(&figure, options.theme.colours());
-        write_plot("--figure", path, svg, &csv_of_figure(&figure)?)?;
+        let svg = drawing_of_figure(&figure, options.width).svg(options.theme.colours());
+        write_plot("--figure", path, &svg, &csv_of_figure(&figure)?)?;
     }
     Ok(outcome)
 }

@@ -10,6 +10,7 @@ use crate::figures::profiles::figure_of_profiles;
 use crate::figures::residuals::figure_of_residuals;
 use crate::figures::stacked::figure_of_stacked;
 use crate::figures::trends::figure_of_trends;
+use crate::listed::{LISTED, left_out};
 use crate::methods::methods;
 use windfall_campaign::impacts::figure_impact::figure_of_impact;
 use windfall_campaign::impacts::groups::{
@@ -138,15 +139,20 @@ fn results(outcome: &CampaignOutcome) -> Section {
 
 /// Every impact with its parameters and their intervals.
 fn every_impact(outcome: &CampaignOutcome) -> Section {
-    let tables = laws_of(outcome).into_iter().map(|law| CaptionedTable {
+    let laws = laws_of(outcome);
+    let own = laws.iter().map(|law| (law, of_law(outcome, law)));
+    let rows = own.clone().map(|(_, impacts)| impacts.len()).max();
+    let listed = own.filter(|(_, impacts)| impacts.len() <= LISTED);
+    let tables = listed.map(|(law, impacts)| CaptionedTable {
         caption: format!(
             "Each impact under {law}: estimate ± standard deviation, and 95 % interval"
         ),
-        cells: impact_cells(&of_law(outcome, law)),
+        cells: impact_cells(&impacts),
     });
+    let words = left_out(rows.unwrap_or(0), "impacts.csv and results.json");
     Section {
         tables: tables.collect(),
-        ..Section::of_words("Each impact", Vec::new())
+        ..Section::of_words("Each impact", words.into_iter().collect())
     }
 }
 

@@ -1,12 +1,10 @@
 //! What the report of a campaign that fits no impacts says.
 
+use crate::listed::{LISTED, left_out};
 use windfall_draw::page::{CaptionedTable, Section};
 use windfall_measure::measured::{MeasuredItem, MeasuredOutcome, ShownValue, laws_of};
 use windfall_measure::run::ReportedItems;
 use windfall_measure::text::{groups_cells, items_cells, of_law, spread_items};
-
-/// More rows than this stand in impacts.csv alone.
-const LISTED: usize = 400;
 
 /// Sections on such a campaign.
 pub fn sections_of_items(reported: &ReportedItems) -> Vec<Section> {
@@ -58,15 +56,11 @@ fn every_item(outcome: &MeasuredOutcome) -> Section {
         &outcome.parts,
         shown.parts,
     ));
-    let words = match outcome.impacts.len().max(outcome.parts.len()) > LISTED {
-        true => vec![format!(
-            "Tables of more than {LISTED} rows are left to impacts.csv and results.json."
-        )],
-        false => Vec::new(),
-    };
+    let rows = outcome.impacts.len().max(outcome.parts.len());
+    let words = left_out(rows, "impacts.csv and results.json");
     Section {
         tables,
-        ..Section::of_words("Each recording", words)
+        ..Section::of_words("Each recording", words.into_iter().collect())
     }
 }
 

@@ -6,6 +6,7 @@ pub mod figures;
 pub mod fit_any;
 pub mod impacts;
 pub mod items;
+mod listed;
 pub mod methods;
 pub mod run;
 pub mod stored_card;

@@ -4,6 +4,7 @@ use crate::any_text::csv_of_any;
 use crate::fit_any::measurement_of;
 use crate::impacts::sections_of_campaign;
 use crate::items::sections_of_items;
+use crate::listed::{LISTED, left_out};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -14,9 +15,10 @@ use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::digests::{Digests, run_origin};
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::model::{Campaign, FilePlan};
-use windfall_draw::files::{FigureFolder, NamedFigure, write_figures};
+use windfall_draw::files::{FigureFolder, FigureFormat, NamedFigure, write_figures};
 use windfall_draw::page::{CaptionedTable, Report, Section, html_of_report};
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::on_threads::on_threads;
 use windfall_files::progress::Progress;
@@ -40,6 +42,10 @@ pub struct ReportRequest {
     pub out: Option<PathBuf>,
     /// Colours of the files of figures; the page has both.
     pub theme: FigureTheme,
+    /// Width of the files of figures on paper; as wide as a screen shows them where it is left out.
+    pub width: Option<Width>,
+    /// Formats of the files of figures; SVG and PNG where it is empty.
+    pub formats: Vec<FigureFormat>,
 }
 
 /// What was written.
@@ -198,6 +204,8 @@ fn write(
     let folder = FigureFolder {
         directory: out.join(FIGURES),
         theme: request.theme,
+        width: request.width,
+        formats: request.formats.clone(),
     };
     let mut files = write_figures(&folder, &drawn)?;
     let json = serde_json::to_string_pretty(outcome)
@@ -245,33 +253,78 @@ fn origin(inputs: &[(String, String)], options: &str) -> Section {
             rows: rows_of(inputs).collect(),
         },
     };
+    let mut words = vec![format!(
+        "windfall {VERSION} read {} files. The same files, options and version give the same \
+         numbers to the last bit, on any number of threads. campaign.toml, word for word, and all \
+         options are below.",
+        inputs.len()
+    )];
+    words.extend(left_out(inputs.len(), "inputs.csv"));
+    let (campaign, settings) = in_words(options);
+    let settings = CaptionedTable {
+        caption: "Options of this run; what is not set is left out".to_owned(),
+        cells: Cells {
+            header: ["option", "value"].map(str::to_owned).to_vec(),
+            rows: settings,
+        },
+    };
+    let mut tables = vec![settings];
+    tables.extend((inputs.len() <= LISTED).then_some(table));
+    tables.retain(|own| !own.cells.rows.is_empty());
     Section {
-        listing: Some(readable(options)),
-        tables: vec![table],
-        ..Section::of_words(
-            "Origin",
-            vec![format!(
-                "windfall {VERSION}. The same files, options and version give the same numbers to \
-                 the last bit, on any number of threads. Options, campaign.toml word for word \
-                 among them:"
-            )],
-        )
+        listing: (!campaign.is_empty()).then_some(campaign),
+        tables,
+        ..Section::of_words("Origin", words)
     }
 }
 
-/// JSON with texts of several lines written as such.
-fn readable(options: &str) -> String {
-    let Ok(serde_json::Value::Object(map)) = serde_json::from_str(options) else {
-        return options.to_owned();
+/// Options, which are JSON: texts of several lines word for word, and the others as rows of words
+/// and values.
+fn in_words(options: &str) -> (String, Vec<Vec<String>>) {
+    let Ok(Value::Object(map)) = serde_json::from_str(options) else {
+        return (options.to_owned(), Vec::new());
     };
-    let text = |value: &serde_json::Value| match value {
-        serde_json::Value::String(text) => text.clone(),
+    let (mut texts, mut rows) = (Vec::new(), Vec::new());
+    for (key, value) in &map {
+        match value {
+            Value::String(text) if text.contains('\n') => texts.push(text.clone()),
+            value => add_rows(&key.replace('_', " "), value, &mut rows),
+        }
+    }
+    (texts.join("\n"), rows)
+}
+
+/// Adds an option by its words, or what it consists of.
+fn add_rows(words: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
+    let plain = |value: &Value| match value {
+        Value::String(text) => text.replace('_', " "),
+        Value::Bool(true) => "yes".to_owned(),
+        Value::Bool(false) => "no".to_owned(),
         other => other.to_string(),
     };
-    let parts = map
-        .iter()
-        .map(|(key, value)| format!("{key}: {}", text(value)));
-    parts.collect::<Vec<_>>().join("\n")
+    let own = match value {
+        Value::Null => return,
+        Value::Object(map) => {
+            for (key, value) in map {
+                add_rows(&format!("{words}, {}", key.replace('_', " ")), value, rows);
+            }
+            return;
+        }
+        Value::Array(all) if all.iter().any(Value::is_object) => {
+            for (place, value) in all.iter().enumerate() {
+                add_rows(&format!("{words} {}", place + 1), value, rows);
+            }
+            return;
+        }
+        Value::Array(all) => {
+            let set = all.iter().filter(|own| !own.is_null());
+            set.map(plain).collect::<Vec<_>>().join(", ")
+        }
+        other => plain(other),
+    };
+    if !own.is_empty() {
+        rows.push(vec![words.to_owned(), own]);
+    }
 }
 
 fn citation() -> Section {

@@ -6,7 +6,8 @@ use crate::request::event::{Event, impact_of_event};
 use std::path::{Path, PathBuf};
 use windfall_draw::plot::write_plot;
 use windfall_draw::theme::LIGHT;
-use windfall_draw::xy::{Figure, Panel, Series, Style, csv_of_figure, svg_of_figure};
+use windfall_draw::width::Width;
+use windfall_draw::xy::{Figure, Panel, Series, Style, csv_of_figure, drawing_of_figure};
 use windfall_files::error::Error;
 
 /// Points over a contact: lines look smooth and files stay small.
@@ -14,14 +15,21 @@ const POINTS: u32 = 160;
 /// What is shown before and after contact, as a part of its duration.
 const MARGIN: f64 = 0.1;
 
-/// Simulates an impact and writes its figure (SVG or PNG) with its data.
+/// Simulates an impact and writes its figure (SVG, PNG or PDF) with its data.
+///
+/// * `width`: on paper; as wide as a screen shows it if left out
 ///
 /// # Errors
 /// It cannot be simulated, or a file cannot be written.
-pub fn write_impact_figure(path: &Path, event: &Event) -> Result<[PathBuf; 2], Error> {
+pub fn write_impact_figure(
+    path: &Path,
+    event: &Event,
+    width: Option<Width>,
+) -> Result<[PathBuf; 2], Error> {
     let figure = figure_of_motion(event.law.kind().name(), &motion_of_figure(event)?);
     let csv = csv_of_figure(&figure)?;
-    write_plot("--plot", path, svg_of_figure(&figure, &LIGHT), &csv)
+    let svg = drawing_of_figure(&figure, width).svg(&LIGHT);
+    write_plot("--plot", path, &svg, &csv)
 }
 
 /// The motion at instants that are close together after first touch, where a law
@@ -44,7 +52,7 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
     let path = &motion.trajectory;
     let times = path.times.iter().map(|time| 1e3 * time);
     let over_time = times.zip(path.force.clone()).collect();
-    let force = ("contact force", "N");
+    let force = ("contact force F", "N");
     let loops = vec![
         Series::new("loading", Style::Line, loading).coloured(0),
         Series::new("unloading", Style::Line, unloading).coloured(1),
@@ -54,8 +62,8 @@ fn figure_of_motion(law: &str, motion: &SimulatedMotion) -> Figure {
     Figure::new(
         format!("{law}: {mass} kg at {velocity} m/s"),
         vec![
-            Panel::new(("displacement", "mm"), force, loops),
-            Panel::new(("time from first touch", "ms"), force, course),
+            Panel::new(("displacement x", "mm"), force, loops),
+            Panel::new(("time t from first touch", "ms"), force, course),
         ],
     )
 }
@@ -106,16 +114,18 @@ mod tests {
         let table = folder.path().join("curve.csv");
         std::fs::write(&table, "displacement_m,force_N\n0,0\n").unwrap();
         let law = event("hertz(k=753599)");
-        let refused = write_impact_figure(&path, &law).unwrap_err().to_string();
+        let refused = write_impact_figure(&path, &law, None)
+            .unwrap_err()
+            .to_string();
         assert!(
             refused.contains("curve.csv: this file was not written by windfall"),
             "{refused}"
         );
         assert!(!path.exists());
         std::fs::remove_file(&table).unwrap();
-        write_impact_figure(&path, &law).unwrap();
+        write_impact_figure(&path, &law, None).unwrap();
         let first = std::fs::read(&table).unwrap();
-        write_impact_figure(&path, &event("hertz(k=400000)")).unwrap();
+        write_impact_figure(&path, &event("hertz(k=400000)"), None).unwrap();
         assert_ne!(std::fs::read(&table).unwrap(), first);
     }
 

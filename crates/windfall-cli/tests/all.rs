@@ -33,6 +33,7 @@ mod on_table;
 mod outputs;
 mod page_quantities;
 mod plan;
+mod print;
 mod regress;
 mod relaxation;
 mod report;

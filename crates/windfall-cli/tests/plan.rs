@@ -648,7 +648,7 @@ fn rejects_what_cannot_be_planned() {
         ),
         (
             "mean --sd 1 --fruit 4 --figure plan.gif",
-            "--figure plan.gif: figures are written as SVG or PNG",
+            "--figure plan.gif: figures are written as SVG, PNG or PDF",
         ),
         (
             "achieved t.csv --formula 'k ~ V'",

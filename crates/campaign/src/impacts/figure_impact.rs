@@ -38,16 +38,18 @@ pub fn figure_of_impact(
     };
     let mut panels = Vec::new();
     if let Some(force) = &impact.force {
-        panels.push(over_time("contact force", ("N", 1.0), force, |m| &m.force));
+        panels.push(over_time("contact force F", ("N", 1.0), force, |m| {
+            &m.force
+        }));
     }
     if let Some(displacement) = &impact.displacement {
         let unit = ("mm", 1e3);
-        panels.push(over_time("displacement", unit, displacement, |m| {
+        panels.push(over_time("displacement x", unit, displacement, |m| {
             &m.displacement
         }));
     }
     if let (Some((label, rate)), true) = (shown_rate(impact), !panels.is_empty()) {
-        let mut panel = over_time("displacement rate", ("m/s", 1.0), &rate, |m| &m.rate);
+        let mut panel = over_time("displacement rate v", ("m/s", 1.0), &rate, |m| &m.rate);
         panel.series[1].label = label;
         panels.push(panel);
     }
@@ -56,8 +58,8 @@ pub fn figure_of_impact(
     }
     if panels.is_empty() {
         for (name, unit, series) in [
-            ("displacement rate", "m/s", &impact.rate),
-            ("acceleration", "m/s²", &impact.acceleration),
+            ("displacement rate v", "m/s", &impact.rate),
+            ("acceleration a", "m/s²", &impact.acceleration),
         ] {
             if let Some(series) = series {
                 let quantity = (name, (unit, 1.0));
@@ -203,7 +205,7 @@ fn over_time(
         Series::new(&fitted.law, Style::Line, line.collect()).coloured(1 + index)
     }));
     Panel::new(
-        ("time since the force threshold", "ms"),
+        ("time t since the force threshold", "ms"),
         (name, unit),
         series,
     )
@@ -238,5 +240,5 @@ fn force_loop(
         let line = inside.map(|(_, (x, f))| (1e3 * x, *f)).collect();
         Series::new(&fitted.law, Style::Line, line).coloured(1 + index)
     }));
-    Panel::new(("displacement", "mm"), ("force", "N"), series)
+    Panel::new(("displacement x", "mm"), ("contact force F", "N"), series)
 }

@@ -7,11 +7,11 @@ use windfall_files::error::Error;
 
 /// The font of every figure, so that a picture does not depend on the fonts of the
 /// machine: Liberation Sans, as wide as Arial and Helvetica (licence beside it).
-static FONT: &[u8] = include_bytes!("../../fonts/LiberationSans-Regular.ttf");
+pub static FONT: &[u8] = include_bytes!("../../fonts/LiberationSans-Regular.ttf");
 const FONT_FAMILY: &str = "Liberation Sans";
 
 /// Read once: it takes longer than a figure.
-static OPTIONS: LazyLock<Options<'static>> = LazyLock::new(|| {
+pub static OPTIONS: LazyLock<Options<'static>> = LazyLock::new(|| {
     let mut options = Options {
         font_family: FONT_FAMILY.to_owned(),
         ..Options::default()

@@ -3,9 +3,11 @@
 
 use crate::ranking::outcome::{LawEvidenceOutcome, LawsOutcome};
 use windfall_draw::axis::{Axis, axis};
-use windfall_draw::files::Painting;
+use windfall_draw::files::{Painting, Picture};
 use windfall_draw::frame::{Frame, Rectangle};
 use windfall_draw::svg::{Anchor, Drawing, Ink};
+use windfall_draw::text_width::cut_to;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 
@@ -16,6 +18,9 @@ const BETWEEN: f64 = 26.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 62.0;
 const BELOW: f64 = 52.0;
+
+/// Room for a second line of a title; px.
+const LINE: f64 = 14.0;
 
 /// Height of a law; px.
 const ROW: f64 = 34.0;
@@ -32,14 +37,14 @@ const NO_SUPPORT: f64 = 10.0;
 ///
 /// # Errors
 /// None in practice: the data are written to memory.
-pub fn laws_painting(outcome: &LawsOutcome) -> Result<Painting, Error> {
+pub fn laws_painting(outcome: &LawsOutcome, paper: Option<Width>) -> Result<Painting, Error> {
     Ok(Painting {
         name: "laws".to_owned(),
         caption: "AICc of each law above that of the best one, over all impacts with 95 % \
                   intervals (impacts taken as independent) and on each impact; \
                   prediction error of the force at held-out velocities, ± one standard error. Beyond the broken line a law has next to no support."
             .to_owned(),
-        drawing: drawing_of(outcome),
+        picture: Picture::Drawn(drawing_of(outcome, paper)),
         csv: csv_of(outcome)?,
     })
 }
@@ -111,27 +116,66 @@ fn squeezed_axis(values: impl Iterator<Item = f64>) -> Axis {
     }
 }
 
-fn drawing_of(outcome: &LawsOutcome) -> Drawing {
+/// Where the panels stand: side by side, or below each other where they do not fit.
+struct Places {
+    across: f64,
+    width: f64,
+    height: f64,
+    aside: bool,
+}
+
+impl Places {
+    fn of(laws: usize, panels: f64, paper: Option<Width>) -> Self {
+        let aside = paper.is_none_or(|own| own.columns(2) == 2);
+        let sides = LEFT + RIGHT + if aside { BETWEEN * (panels - 1.0) } else { 0.0 };
+        let beside = if aside { panels } else { 1.0 };
+        let width = paper.map_or(WIDTH, |own| (own.px() - sides) / beside);
+        Self {
+            across: sides + beside * width,
+            width,
+            height: ROW * laws.max(1) as f64,
+            aside,
+        }
+    }
+
+    /// The panel of this number.
+    fn within(&self, place: f64) -> Rectangle {
+        let (across, down) = match self.aside {
+            true => (place * (self.width + BETWEEN), 0.0),
+            false => (0.0, place * (self.height + BELOW + LINE)),
+        };
+        Rectangle {
+            left: LEFT + across,
+            top: TOP + down,
+            width: self.width,
+            height: self.height,
+        }
+    }
+}
+
+fn drawing_of(outcome: &LawsOutcome, paper: Option<Width>) -> Drawing {
     let laws = &outcome.laws;
-    let height = ROW * laws.len().max(1) as f64;
     let predicted = laws.iter().any(|law| law.prediction.is_some());
     let panels = if predicted { 3.0 } else { 2.0 };
-    let width = LEFT + panels * WIDTH + (panels - 1.0) * BETWEEN + RIGHT;
-    let mut drawing = Drawing::new(width, TOP + height + BELOW);
+    let places = Places::of(laws.len(), panels, paper);
+    let within = |place: f64| places.within(place);
+    let mut drawing = Drawing::at_width(
+        paper,
+        places.across,
+        within(panels - 1.0).bottom() + BELOW + paper.map_or(0.0, |_| LINE),
+    );
     let title = format!("{} laws on {} impacts", laws.len(), outcome.impacts);
-    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(24.0, 26.0, &title);
     drawing.dashed(&[(24.0, 43.0), (42.0, 43.0)], Ink::Text, 1.0);
     let legend = "ΔAICc of 10: a law beyond it has next to no support";
     drawing.text((48.0, 46.8), Anchor::Start, 11.0, legend);
-    let within = |place: f64| Rectangle {
-        left: LEFT + place * (WIDTH + BETWEEN),
-        top: TOP,
-        width: WIDTH,
-        height,
-    };
-    for (row, law) in laws.iter().enumerate() {
-        let y = TOP + (row as f64 + 0.5) * ROW;
-        drawing.text((LEFT - 8.0, y + 3.8), Anchor::End, 11.0, &law.law);
+    let named = if places.aside { 1 } else { panels as usize };
+    for (place, (row, law)) in
+        (0..named).flat_map(|place| laws.iter().enumerate().map(move |own| (place, own)))
+    {
+        let y = within(place as f64).top + (row as f64 + 0.5) * ROW;
+        let name = cut_to(&law.law, drawing.letters(11.0), LEFT - 12.0);
+        drawing.text((LEFT - 8.0, y + 3.8), Anchor::End, 11.0, &name);
     }
 
     let ends = |law: &LawEvidenceOutcome| [Some(law.aicc), law.aicc_low, law.aicc_high];

@@ -159,7 +159,7 @@ fn compared(
     let shown = middle_impact(&ranking.compared, &fitted);
     let outcome = outcome(campaign, ranking, &ids, specimens_first, failed, findings);
     if let Some(folder) = figures {
-        write_paintings(folder, &[laws_painting(&outcome)?])?;
+        write_paintings(folder, &[laws_painting(&outcome, folder.width)?])?;
         if let Some(place) = shown {
             draw_impact(campaign, rig, entries[place], &problems, &outcome, folder)?;
         }

@@ -194,7 +194,7 @@ fn prediction_panel(impacts: &[&ImpactOutcome], quantity: &Quantity) -> Option<P
     series.insert(0, Series::new("", Style::Dashed, equal).coloured(6));
     let (x, y) = (format!("measured {heading}"), format!("fitted {heading}"));
     let unit = quantity.shown_unit;
-    Some(Panel::new((&x, unit), (&y, unit), series))
+    Some(Panel::new((&x, unit), (&y, unit), series).with_equal_axes())
 }
 
 #[cfg(test)]

@@ -8,24 +8,26 @@ use crate::run::frame_format::Frame;
 use std::collections::BTreeMap;
 use windfall_draw::axis::{axis, unit_label};
 use windfall_draw::colour_map::colour_of;
-use windfall_draw::files::Painting;
+use windfall_draw::files::{Painting, Picture};
 use windfall_draw::svg::{Anchor, Drawing, Ink};
+use windfall_draw::text_width::cut_to;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_scene::vector::{Vector, cross, dot, length, subtract, unit};
 
-/// Size of the drawing; px.
+/// Width of the drawing where none is asked for, and its height over its width; px.
 const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 540.0;
+const HIGH: f64 = 540.0 / 760.0;
 
-/// Part of it that the scene fills; px.
+/// Room around the scene; px.
 const LEFT: f64 = 24.0;
 const TOP: f64 = 64.0;
-const RIGHT: f64 = 660.0;
-const BOTTOM: f64 = 516.0;
+const BESIDE: f64 = 100.0;
+const BELOW: f64 = 24.0;
 
-/// The bar of colours: its left side, top, width and height; px.
-const BAR: [f64; 4] = [676.0, 150.0, 14.0, 250.0];
+/// The bar of colours: its distance from the scene, its width and its greatest height; px.
+const BAR: [f64; 3] = [16.0, 14.0, 250.0];
 
 /// Steps of the bar of colours, and of those of fruit.
 const STEPS: usize = 64;
@@ -42,7 +44,7 @@ const EDGE: f64 = 0.75;
 
 /// How far beyond the walls fruit still count for what the camera sees, over the diagonal of
 /// the scene; 1.
-const BESIDE: f64 = 0.15;
+const AROUND: f64 = 0.15;
 
 /// From where a scene is seen where nothing is said: azimuth and elevation; rad.
 pub const FROM: [f64; 2] = [
@@ -54,14 +56,17 @@ pub const FROM: [f64; 2] = [
 ///
 /// * `from`: where the eye stands: azimuth from x towards y, elevation; rad
 /// * `most`: force of the last colour; N
+/// * `width`: on paper; as wide as a screen shows it if left out
 pub fn scene_painting(
     frames: &SceneFrames,
     frame: &Frame,
     from: [f64; 2],
     most: f64,
+    width: Option<Width>,
 ) -> Result<Painting, Error> {
-    let camera = Camera::around(&looked_at(frames, frame), from, pane());
-    let balls = balls_of(frames, frame, &camera, most);
+    let sheet = Sheet::of(width);
+    let camera = Camera::around(&looked_at(frames, frame), from, sheet.pane());
+    let balls = balls_of(frames, frame, &camera, (most, &sheet));
     let mut faces: Vec<Pane3> = frames
         .walls
         .iter()
@@ -71,7 +76,7 @@ pub fn scene_painting(
             faces_of(wall, &points.collect::<Vec<_>>(), &camera)
         })
         .collect();
-    let mut drawing = Drawing::new(WIDTH, HEIGHT);
+    let mut drawing = Drawing::at_width(width, WIDTH, sheet.height);
     for next in order(&balls, &mut faces, &camera) {
         match next {
             Next::Ball(own) => {
@@ -82,18 +87,19 @@ pub fn scene_painting(
         }
     }
     let title = frames.about.title.as_str();
-    drawing.text((LEFT, 28.0), Anchor::Start, 15.0, title);
+    let short = cut_to(title, drawing.letters(15.0), sheet.width - LEFT);
+    drawing.text((LEFT, 28.0), Anchor::Start, 15.0, &short);
     let words = format!("{} fruit at {} s", frame.fruit.len(), time_of(frame));
     drawing.text((LEFT, 47.0), Anchor::Start, 11.5, &words);
-    draw_bar(&mut drawing, most);
-    draw_axes(&mut drawing, &camera);
+    draw_bar(&mut drawing, most, &sheet);
+    draw_axes(&mut drawing, &camera, &sheet);
     Ok(Painting {
         name: "picture".to_owned(),
         caption: format!(
             "{title} at {} s; fruit in the colour of the largest peak force of their contacts so far.",
             time_of(frame)
         ),
-        drawing,
+        picture: Picture::Drawn(drawing),
         csv: csv_of(frames, frame)?,
     })
 }
@@ -103,10 +109,32 @@ fn time_of(frame: &Frame) -> f64 {
     (frame.time * 1e3).round() / 1e3
 }
 
-fn pane() -> Pane {
-    Pane {
-        middle: (0.5 * (LEFT + RIGHT), 0.5 * (TOP + BOTTOM)),
-        half: (0.5 * (RIGHT - LEFT), 0.5 * (BOTTOM - TOP)),
+/// Size of the drawing; px.
+struct Sheet {
+    width: f64,
+    height: f64,
+}
+
+impl Sheet {
+    fn of(width: Option<Width>) -> Self {
+        let width = width.map_or(WIDTH, Width::px);
+        Self {
+            width,
+            height: HIGH * width,
+        }
+    }
+
+    /// Right and lower end of the scene; px.
+    fn ends(&self) -> (f64, f64) {
+        (self.width - BESIDE, self.height - BELOW)
+    }
+
+    fn pane(&self) -> Pane {
+        let (right, bottom) = self.ends();
+        Pane {
+            middle: (0.5 * (LEFT + right), 0.5 * (TOP + bottom)),
+            half: (0.5 * (right - LEFT), 0.5 * (bottom - TOP)),
+        }
     }
 }
 
@@ -117,7 +145,7 @@ fn looked_at(frames: &SceneFrames, frame: &Frame) -> Vec<Vector> {
         points.extend(wall.vertices.iter().map(|own| posed(*own, pose)));
     }
     let bounds = &frames.about.bounds;
-    let beside = BESIDE * bounds.diagonal();
+    let beside = AROUND * bounds.diagonal();
     for own in &frame.fruit {
         let (place, radius) = (own.place.map(f64::from), radius_of(frames, own.fruit));
         if bounds.holds(place, beside) {
@@ -141,7 +169,13 @@ fn radius_of(frames: &SceneFrames, fruit: u32) -> f64 {
     own.copied().map_or(0.0, f64::from)
 }
 
-fn balls_of(frames: &SceneFrames, frame: &Frame, camera: &Camera, most: f64) -> Vec<Ball> {
+fn balls_of(
+    frames: &SceneFrames,
+    frame: &Frame,
+    camera: &Camera,
+    (most, sheet): (f64, &Sheet),
+) -> Vec<Ball> {
+    let (right, bottom) = sheet.ends();
     let ball = |own: &crate::run::frame_format::FruitFrame| {
         let (place, radius) = (own.place.map(f64::from), radius_of(frames, own.fruit));
         let seen = camera.see(place);
@@ -157,9 +191,9 @@ fn balls_of(frames: &SceneFrames, frame: &Frame, camera: &Camera, most: f64) -> 
     let near = |own: &Ball| {
         let depth = dot(subtract(own.place, camera.eye), camera.forward);
         let inside = own.at.0 > LEFT - own.size
-            && own.at.0 < RIGHT + own.size
+            && own.at.0 < right + own.size
             && own.at.1 > TOP - own.size
-            && own.at.1 < BOTTOM + own.size;
+            && own.at.1 < bottom + own.size;
         depth > 2.0 * own.radius && inside
     };
     frame.fruit.iter().map(ball).filter(near).collect()
@@ -249,8 +283,11 @@ fn draw_face(drawing: &mut Drawing, face: &Pane3) {
     }
 }
 
-fn draw_bar(drawing: &mut Drawing, most: f64) {
-    let [left, top, width, height] = BAR;
+fn draw_bar(drawing: &mut Drawing, most: f64, sheet: &Sheet) {
+    let [apart, width, highest] = BAR;
+    let (right, bottom) = sheet.ends();
+    let (left, height) = (right + apart, highest.min(0.8 * (bottom - TOP)));
+    let top = 0.5 * (TOP + bottom - height);
     let colours = (0..STEPS).map(|k| colour_of(k as f64 / (STEPS - 1) as f64));
     let colours: Vec<_> = colours.collect();
     drawing.colour_bar((left, top), (width, height), &colours);
@@ -265,8 +302,8 @@ fn draw_bar(drawing: &mut Drawing, most: f64) {
 }
 
 /// Directions of x, y and z.
-fn draw_axes(drawing: &mut Drawing, camera: &Camera) {
-    let origin = (LEFT + 22.0, HEIGHT - 34.0);
+fn draw_axes(drawing: &mut Drawing, camera: &Camera, sheet: &Sheet) {
+    let origin = (LEFT + 22.0, sheet.height - 34.0);
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for (axis, name) in axes.into_iter().zip(["x", "y", "z"]) {
         let (x, y) = camera.direction(axis);

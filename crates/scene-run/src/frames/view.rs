@@ -5,8 +5,9 @@ use crate::frames::read::{SceneFrames, frames_absent, frames_file};
 use crate::frames::vtk::write_vtk;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use windfall_draw::png::{PRINT, png_of_svg};
+use windfall_draw::files::FigureFormat;
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
@@ -23,7 +24,9 @@ pub struct PictureRequest {
     pub most: Option<f64>,
     /// Colours.
     pub theme: FigureTheme,
-    /// An SVG or PNG; both in the directory of the results where it is left out.
+    /// On paper; as wide as a screen shows it where it is left out.
+    pub width: Option<Width>,
+    /// An SVG, PNG or PDF; the first two in the directory of the results where it is left out.
     pub out: Option<PathBuf>,
 }
 
@@ -86,8 +89,11 @@ pub fn open_frames(path: &Path) -> Result<SceneFrames, Error> {
 pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcome, Error> {
     let out = request.out.as_deref();
     let ending = out.and_then(Path::extension).and_then(|own| own.to_str());
-    if out.is_some() && !matches!(ending, Some("svg" | "png")) {
-        return Err(unusable("--out", "give a file that ends in .svg or .png"));
+    if out.is_some() && !matches!(ending, Some("svg" | "png" | "pdf")) {
+        return Err(unusable(
+            "--out",
+            "give a file that ends in .svg, .png or .pdf",
+        ));
     }
     let mut frames = open_frames(path)?;
     let directory = run_directory(path);
@@ -117,14 +123,16 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
         None => largest_force(&mut frames)?,
     };
     let from = request.from.unwrap_or(FROM);
-    let painting = scene_painting(&frames, &frame, from, most)?;
-    let svg = painting.drawing.svg(request.theme.colours());
+    let painting = scene_painting(&frames, &frame, from, most, request.width)?;
+    let drawing = painting.picture.drawing(request.width);
+    let svg = drawing.svg(request.theme.colours());
     for file in &files {
-        let png = file.extension().is_some_and(|ending| ending == "png");
-        match png {
-            true => write_whole(file, &png_of_svg(&svg, PRINT)?)?,
-            false => write_whole(file, svg.as_bytes())?,
-        }
+        let format = match file.extension().and_then(|own| own.to_str()) {
+            Some("png") => FigureFormat::Png,
+            Some("pdf") => FigureFormat::Pdf,
+            _ => FigureFormat::Svg,
+        };
+        write_whole(file, &format.of_svg(&svg)?)?;
     }
     Ok(PictureOutcome {
         time: frame.time,

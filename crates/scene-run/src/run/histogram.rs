@@ -69,6 +69,7 @@ pub fn figure_of_histograms(title: &str, histograms: &[HistogramOutcome]) -> Fig
             y_unit: String::new(),
             series: vec![series(Style::Band), series(Style::Line)],
             marks: Vec::new(),
+            equal: false,
         }
     };
     Figure {

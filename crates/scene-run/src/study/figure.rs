@@ -49,6 +49,7 @@ pub fn figure_of_study(outcome: &StudyOutcome) -> Option<NamedFigure> {
                 series(Style::Line, ends),
             ],
             marks: marks.collect(),
+            equal: false,
         }
     };
     Some(NamedFigure {

@@ -2,8 +2,8 @@
 
 use crate::compare::agreement::AgreementRequest;
 use crate::figures::thinning::{drawn_rows, largest};
-use windfall_draw::files::{FigureFolder, Painting, write_paintings};
-use windfall_draw::grid::{Grid, GridPanel, drawing_of_grid};
+use windfall_draw::files::{FigureFolder, Painting, Picture, write_paintings};
+use windfall_draw::grid::{Grid, GridPanel};
 use windfall_draw::xy::{Mark, Panel, Series, Side, Style};
 use windfall_files::error::Error;
 use windfall_files::table::data::Data;
@@ -74,12 +74,13 @@ pub fn draw_agreement(
     let bias = Series::new("mean difference", Style::Level, bias).coloured(1);
     let mut notes = vec!["Numbers at points are lines of the table.".to_owned()];
     notes.extend(drawn.note);
-    let drawing = drawing_of_grid(&Grid {
+    let picture = Picture::Grid(Grid {
         title: format!("{p} against {m}"),
         panels: vec![
             panel("Predicted against measured", equal, &p, &|row| {
                 predicted[row]
-            }),
+            })
+            .with_equal_axes(),
             panel("Differences", bias, "predicted less measured", &difference),
         ],
         columns: 2,
@@ -96,7 +97,7 @@ pub fn draw_agreement(
     let painting = Painting {
         name: "agreement".to_owned(),
         caption: notes.join(" "),
-        drawing,
+        picture,
         csv: csv_text(&["line", "measured", "predicted", "difference"], rows)?,
     };
     write_paintings(folder, &[painting]).map(|_| ())

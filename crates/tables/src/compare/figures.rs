@@ -7,8 +7,8 @@ use crate::figures::groups::{
     DrawnGroups, GroupPlot, GroupPoint, HEADER, HEIGHT, PlottedGroup, draw_groups,
 };
 use crate::figures::words::percent;
-use windfall_draw::files::{FigureFolder, Painting, file_name, write_paintings};
-use windfall_draw::grid::{Grid, drawing_of_grid};
+use windfall_draw::files::{FigureFolder, Painting, Picture, file_name, write_paintings};
+use windfall_draw::grid::Grid;
 use windfall_files::error::Error;
 use windfall_files::table::data::Data;
 use windfall_files::table::write::csv_text;
@@ -113,7 +113,7 @@ fn painting_of(
     let mut panels = before;
     panels.extend(drawn.panels);
     let beside = panels.len() == 2 && drawn.width <= 330.0;
-    let drawing = drawing_of_grid(&Grid {
+    let picture = Picture::Grid(Grid {
         title,
         columns: if beside { 2 } else { 1 },
         panels,
@@ -123,7 +123,7 @@ fn painting_of(
     Ok(Painting {
         name: file_name(name),
         caption: drawn.notes.join(" "),
-        drawing,
+        picture,
         csv: csv_text(&HEADER.map(str::to_owned), drawn.rows)?,
     })
 }

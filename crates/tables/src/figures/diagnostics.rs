@@ -6,8 +6,8 @@ use crate::figures::quantiles::{
 use crate::figures::smooth::lowess;
 use crate::figures::thinning::{drawn_rows, largest};
 use crate::figures::words::{cell, percent};
-use windfall_draw::files::{Painting, file_name};
-use windfall_draw::grid::{Grid, GridPanel, Scale, drawing_of_grid};
+use windfall_draw::files::{Painting, Picture, file_name};
+use windfall_draw::grid::{Grid, GridPanel, Scale};
 use windfall_draw::xy::{Mark, Panel, Series, Side, Style};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
@@ -121,7 +121,7 @@ pub fn diagnostics_painting(
     Ok(Painting {
         name: file_name(name),
         caption: notes.join(" "),
-        drawing: drawing_of_grid(&grid),
+        picture: Picture::Grid(grid),
         csv: csv_of(own, &found)?,
     })
 }
@@ -295,6 +295,7 @@ fn fitted_against_measured(own: &Diagnostics, found: &Found) -> GridPanel {
         ],
         marks(own, &|row| found.studentised[row].abs(), &place, f64::NAN),
     )
+    .with_equal_axes()
 }
 
 fn against_fitted(own: &Diagnostics, found: &Found) -> GridPanel {

@@ -4,8 +4,8 @@
 use crate::figures::settings::{Others, Variable, rows_at, variables_of};
 use crate::figures::thinning::{aside, drawn_rows};
 use crate::figures::words::{cell, percent};
-use windfall_draw::files::{Painting, file_name};
-use windfall_draw::grid::{Grid, GridPanel, Scale, drawing_of_grid};
+use windfall_draw::files::{Painting, Picture, file_name};
+use windfall_draw::grid::{Grid, GridPanel, Scale};
 use windfall_draw::xy::{Panel, Series, Style};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
@@ -141,7 +141,7 @@ pub fn effects_painting(model: &EffectModel) -> Result<Option<Painting>, Error> 
     Ok(Some(Painting {
         name: file_name("effects"),
         caption: notes.join(" "),
-        drawing: drawing_of_grid(&Grid {
+        picture: Picture::Grid(Grid {
             title: format!("Effects on {}", column_title(model.response).0),
             columns: panels.len().min(3),
             panels,

@@ -5,8 +5,8 @@ use crate::figures::quantiles::{Held, QuantileWords, ordered_values, quantile_pa
 use crate::figures::thinning::{drawn_rows, largest};
 use crate::figures::words::{cell, percent};
 use windfall_distribution::tail::normal_upper_quantile;
-use windfall_draw::files::Painting;
-use windfall_draw::grid::{Grid, GridPanel, Scale, drawing_of_grid};
+use windfall_draw::files::{Painting, Picture};
+use windfall_draw::grid::{Grid, GridPanel, Scale};
 use windfall_draw::xy::{Mark, Panel, Series, Side, Style};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
@@ -255,7 +255,7 @@ fn painting(
     Ok(Painting {
         name: name.to_owned(),
         caption: notes.join(" "),
-        drawing: drawing_of_grid(&Grid {
+        picture: Picture::Grid(Grid {
             title,
             columns: if size.0 > SIZE.0 { 2 } else { 3 },
             panels,

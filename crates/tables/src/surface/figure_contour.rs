@@ -8,9 +8,11 @@ use crate::surface::fitted::{FittedSurfaces, SurfaceGrid};
 use crate::surface::outcome::SurfaceOutcome;
 use windfall_draw::axis::axis;
 use windfall_draw::contour_lines::{Field, area_above, contours};
-use windfall_draw::files::{Painting, file_name};
+use windfall_draw::files::{Painting, Picture, file_name};
 use windfall_draw::frame::{Frame, Rectangle};
 use windfall_draw::svg::{Anchor, Drawing, Ink};
+use windfall_draw::text_width::text_width;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 
 /// Points of a grid along each factor.
@@ -46,6 +48,7 @@ const BEST: Ink = Ink::Series(1);
 pub fn contour_paintings(
     fitted: &FittedSurfaces,
     outcome: &SurfaceOutcome,
+    paper: Option<Width>,
 ) -> Result<Vec<Painting>, Error> {
     let all = surface_pairs(fitted, POINTS);
     let painting = |own: &SurfacePairs| {
@@ -57,34 +60,43 @@ pub fn contour_paintings(
                 own.title,
                 reference_words(fitted)
             ),
-            drawing: drawing_of(fitted, outcome, own),
+            picture: Picture::Drawn(drawing_of((fitted, outcome), own, paper)),
             csv: csv_of_pairs(fitted, outcome, own)?,
         })
     };
     all.iter().map(painting).collect()
 }
 
-fn drawing_of(fitted: &FittedSurfaces, outcome: &SurfaceOutcome, own: &SurfacePairs) -> Drawing {
-    let columns = own.grids.len().min(COLUMNS);
-    let rows = own.grids.len().div_ceil(COLUMNS);
-    let (step_x, step_y) = (LEFT + WIDTH + RIGHT, ABOVE + HEIGHT + BELOW);
-    let width = columns as f64 * step_x + BAR + BESIDE_BAR;
-    let mut drawing = Drawing::new(width, TOP + rows as f64 * step_y);
+fn drawing_of(
+    (fitted, outcome): (&FittedSurfaces, &SurfaceOutcome),
+    own: &SurfacePairs,
+    paper: Option<Width>,
+) -> Drawing {
+    let count = own.grids.len();
+    let columns = paper.map_or(count.min(COLUMNS), |own| own.columns(count).min(COLUMNS));
+    let rows = count.div_ceil(columns.max(1));
+    let beside = BAR + BESIDE_BAR;
+    let panel = paper.map_or(WIDTH, |own| {
+        (own.px() - beside) / columns as f64 - LEFT - RIGHT
+    });
+    let (step_x, step_y) = (LEFT + panel + RIGHT, ABOVE + HEIGHT + BELOW);
+    let width = columns as f64 * step_x + beside;
+    let mut drawing = Drawing::at_width(paper, width, TOP + rows as f64 * step_y);
     let title = format!("Contours of {}", own.title);
-    drawing.text((LEFT, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(LEFT, 26.0, &title);
     let mut any = PairPlaces::default();
     for (index, grid) in own.grids.iter().enumerate() {
         let within = Rectangle {
-            left: LEFT + (index % COLUMNS) as f64 * step_x,
-            top: TOP + ABOVE + (index / COLUMNS) as f64 * step_y,
-            width: WIDTH,
+            left: LEFT + (index % columns) as f64 * step_x,
+            top: TOP + ABOVE + (index / columns) as f64 * step_y,
+            width: panel,
             height: HEIGHT,
         };
         let places = places_of(fitted, outcome, grid.factors);
         draw_panel(&mut drawing, fitted, (own, grid), within, &places);
         any = places;
     }
-    draw_legend(&mut drawing, &any);
+    draw_legend(&mut drawing, &any, width);
     let bar = Rectangle {
         left: columns as f64 * step_x + 8.0,
         top: TOP + ABOVE,
@@ -201,24 +213,23 @@ fn distance(a: (f64, f64), b: (f64, f64)) -> f64 {
     (a.0 - b.0).hypot(a.1 - b.1)
 }
 
-fn draw_legend(drawing: &mut Drawing, places: &PairPlaces) {
-    let y = 44.0;
-    let mut x = LEFT + 4.0;
-    drawing.spot((x, y), 3.0, Ink::Text);
-    drawing.text((x + 10.0, y + 3.8), Anchor::Start, 11.0, "runs");
-    x += 54.0;
-    if places.optimum.is_some() {
-        drawing.spot((x, y), 5.5, BEST);
-        drawing.text((x + 12.0, y + 3.8), Anchor::Start, 11.0, "most desirable");
-        x += 112.0;
-    }
-    if places.family.len() > 1 {
-        drawing.polyline(&[(x, y), (x + 18.0, y)], BEST, 2.2);
-        drawing.text(
-            (x + 24.0, y + 3.8),
-            Anchor::Start,
-            11.0,
-            "as desirable (the others change too)",
-        );
+/// What is marked on the panels, in two lines where it is wider than the figure; px.
+fn draw_legend(drawing: &mut Drawing, places: &PairPlaces, width: f64) {
+    let mut entries = vec!["runs"];
+    entries.extend(places.optimum.map(|_| "most desirable"));
+    entries.extend((places.family.len() > 1).then_some("as desirable (the others change too)"));
+    let (mut x, mut y) = (LEFT + 4.0, 38.0);
+    for label in entries {
+        let room = 26.0 + text_width(label, drawing.letters(11.0));
+        if x + room > width {
+            (x, y) = (LEFT + 4.0, y + 15.0);
+        }
+        match label {
+            "runs" => drawing.spot((x + 4.0, y), 3.0, Ink::Text),
+            "most desirable" => drawing.spot((x + 4.0, y), 5.5, BEST),
+            _ => drawing.polyline(&[(x - 4.0, y), (x + 10.0, y)], BEST, 2.2),
+        }
+        drawing.text((x + 14.0, y + 3.8), Anchor::Start, 11.0, label);
+        x += room + 6.0;
     }
 }

@@ -3,9 +3,11 @@
 use crate::surface::outcome::SurfaceModel;
 use windfall_distribution::tail::{normal_quantile, t_upper_quantile};
 use windfall_draw::axis::axis;
-use windfall_draw::files::{Painting, file_name};
+use windfall_draw::files::{Painting, Picture, file_name};
 use windfall_draw::frame::{Frame, Rectangle};
 use windfall_draw::svg::{Anchor, Drawing, Ink};
+use windfall_draw::text_width::text_width;
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::column_title::column_title;
@@ -87,7 +89,11 @@ pub fn half_normal_scores(count: usize) -> Vec<f64> {
 }
 
 /// Pareto and half-normal plot of a response; `None` as in [`effects_of`].
-pub fn effects_painting(model: &SurfaceModel, confidence: f64) -> Result<Option<Painting>, Error> {
+pub fn effects_painting(
+    model: &SurfaceModel,
+    confidence: f64,
+    paper: Option<Width>,
+) -> Result<Option<Painting>, Error> {
     let Some(effects) = effects_of(model, confidence) else {
         return Ok(None);
     };
@@ -117,39 +123,68 @@ pub fn effects_painting(model: &SurfaceModel, confidence: f64) -> Result<Option<
                   largest of all."
             .to_owned(),
         csv: csv_text(&header.map(str::to_owned), rows)?,
-        drawing: drawing_of(model, &effects, &scores, confidence),
+        picture: Picture::Drawn(drawing_of((model, &effects), &scores, confidence, paper)),
     }))
 }
 
-fn drawing_of(model: &SurfaceModel, effects: &Effects, scores: &[f64], level: f64) -> Drawing {
+fn drawing_of(
+    (model, effects): (&SurfaceModel, &Effects),
+    scores: &[f64],
+    level: f64,
+    paper: Option<Width>,
+) -> Drawing {
     let height = (effects.terms.len() as f64 * BAR + 8.0).max(LEAST_HEIGHT);
-    let width = LEFT + WIDTH + BETWEEN + WIDTH + RIGHT;
-    let mut drawing = Drawing::new(width, TOP + height + BELOW);
+    // Below each other where they do not fit side by side.
+    let aside = paper.is_none_or(|own| own.columns(2) == 2);
+    let sides = LEFT + RIGHT + if aside { BETWEEN } else { 0.0 };
+    let panels = if aside { 2.0 } else { 1.0 };
+    let panel = paper.map_or(WIDTH, |own| (own.px() - sides) / panels);
+    let second = if aside { 0.0 } else { height + BELOW + 14.0 };
+    let width = sides + panels * panel;
+    let mut drawing = Drawing::at_width(paper, width, TOP + second + height + BELOW);
     let title = format!("Effects on {}", column_title(&model.response).0);
-    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
-    let mut x = 24.0;
-    for (ink, label) in [(Ink::Series(0), "raises"), (Ink::Series(1), "lowers")] {
-        drawing.spot((x + 4.0, 43.0), 5.0, ink);
-        drawing.text((x + 14.0, 46.8), Anchor::Start, 11.0, label);
+    drawing.title(24.0, 26.0, &title);
+    let (mut x, mut y) = (24.0, 39.0);
+    for (lowers, label) in [(false, "raises"), (true, "lowers")] {
+        draw_mark(&mut drawing, (x + 4.0, y), lowers);
+        drawing.text((x + 14.0, y + 3.8), Anchor::Start, 11.0, label);
         x += 66.0;
     }
     let percent = 100.0 * level;
-    drawing.dashed(&[(x, 43.0), (x + 18.0, 43.0)], Ink::Text, 1.2);
     let limits = format!("{percent} % limits: one term, and all together (Bonferroni)");
-    drawing.text((x + 24.0, 46.8), Anchor::Start, 11.0, &limits);
+    if x + 24.0 + text_width(&limits, drawing.letters(11.0)) > width {
+        (x, y) = (24.0, y + 15.0);
+    }
+    drawing.dashed(&[(x, y), (x + 18.0, y)], Ink::Text, 1.2);
+    drawing.text((x + 24.0, y + 3.8), Anchor::Start, 11.0, &limits);
     let within = Rectangle {
         left: LEFT,
         top: TOP,
-        width: WIDTH,
+        width: panel,
         height,
     };
     draw_pareto(&mut drawing, effects, within);
+    let left = if aside {
+        LEFT + panel + BETWEEN
+    } else {
+        BETWEEN
+    };
     let within = Rectangle {
-        left: LEFT + WIDTH + BETWEEN,
-        ..within
+        left,
+        top: TOP + second,
+        width: width - RIGHT - left,
+        height,
     };
     draw_half_normal(&mut drawing, effects, scores, within);
     drawing
+}
+
+/// A mark of a term: a spot where it raises, a square where it lowers.
+fn draw_mark(drawing: &mut Drawing, at: (f64, f64), lowers: bool) {
+    match lowers {
+        false => drawing.spot(at, 4.5, Ink::Series(0)),
+        true => drawing.mark(at, 4.2, 1, Ink::Series(1)),
+    }
 }
 
 fn ink_of(term: &TermEffect) -> Ink {
@@ -190,7 +225,15 @@ fn draw_pareto(drawing: &mut Drawing, effects: &Effects, within: Rectangle) {
             (right, middle + half),
             (within.left, middle + half),
         ];
-        drawing.area(&[corners.to_vec()], ink_of(term));
+        // Paler within a line where it lowers: told apart in grey print, too.
+        match term.t < 0.0 {
+            false => drawing.area(&[corners.to_vec()], ink_of(term)),
+            true => {
+                drawing.veil(&corners, ink_of(term), 0.35);
+                let around = [&corners[..], &corners[..1]].concat();
+                drawing.polyline(&around, ink_of(term), 1.0);
+            }
+        }
         let at = (within.left - 7.0, middle + 3.8);
         drawing.text(at, Anchor::End, 11.0, &short(&term.name));
     }
@@ -228,7 +271,7 @@ fn draw_half_normal(drawing: &mut Drawing, effects: &Effects, scores: &[f64], wi
     draw_limits(drawing, effects, &frame);
     for (term, score) in effects.terms.iter().zip(scores) {
         let (x, y) = frame.place((term.t.abs(), *score));
-        drawing.spot((x, y), 4.0, ink_of(term));
+        draw_mark(drawing, (x, y), term.t < 0.0);
         if term.t.abs() > effects.critical {
             let text = short(&term.name);
             let (at, anchor) = match x > within.left + 0.5 * within.width {

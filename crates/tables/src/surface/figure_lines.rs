@@ -45,6 +45,7 @@ pub fn figure_of_perturbation(fitted: &FittedSurfaces) -> NamedFigure {
                 at: (0.0, response.surface.value(&fitted.reference)),
                 side: Side::BelowRight,
             }],
+            equal: false,
         }
     });
     NamedFigure {
@@ -96,6 +97,7 @@ pub fn figure_of_desirability(fitted: &FittedSurfaces) -> Option<NamedFigure> {
             y_unit: String::new(),
             series,
             marks: Vec::new(),
+            equal: false,
         }
     });
     Some(NamedFigure {

@@ -9,9 +9,10 @@ use crate::surface::outcome::SurfaceOutcome;
 use std::f64::consts::PI;
 use windfall_draw::axis::{Axis, axis};
 use windfall_draw::contour_lines::{Field, contours};
-use windfall_draw::files::{Painting, file_name};
+use windfall_draw::files::{Painting, Picture, file_name};
 use windfall_draw::frame::Rectangle;
 use windfall_draw::svg::{Anchor, Drawing, Ink};
+use windfall_draw::width::Width;
 use windfall_files::error::Error;
 
 /// Points of a grid along each factor: a facet is then a few px wide.
@@ -38,6 +39,7 @@ const BESIDE: f64 = 92.0;
 pub fn view_paintings(
     fitted: &FittedSurfaces,
     outcome: &SurfaceOutcome,
+    paper: Option<Width>,
 ) -> Result<Vec<Painting>, Error> {
     let all = surface_pairs(fitted, POINTS);
     let painting = |own: &SurfacePairs| {
@@ -48,31 +50,36 @@ pub fn view_paintings(
                 own.title,
                 reference_words(fitted)
             ),
-            drawing: drawing_of(fitted, outcome, own),
+            picture: Picture::Drawn(drawing_of((fitted, outcome), own, paper)),
             csv: csv_of_pairs(fitted, outcome, own)?,
         })
     };
     all.iter().map(painting).collect()
 }
 
-fn drawing_of(fitted: &FittedSurfaces, outcome: &SurfaceOutcome, own: &SurfacePairs) -> Drawing {
-    let columns = own.grids.len().min(COLUMNS);
-    let rows = own.grids.len().div_ceil(COLUMNS);
-    let width = columns as f64 * WIDTH + BESIDE;
-    let mut drawing = Drawing::new(width, TOP + rows as f64 * HEIGHT + 8.0);
+/// On paper the upright axes alone say how high it is; a bar beside them would take their room.
+fn drawing_of(
+    (fitted, outcome): (&FittedSurfaces, &SurfaceOutcome),
+    own: &SurfacePairs,
+    paper: Option<Width>,
+) -> Drawing {
+    let count = own.grids.len();
+    let columns = paper.map_or(count.min(COLUMNS), |own| own.columns(count).min(COLUMNS));
+    let rows = count.div_ceil(columns.max(1));
+    let panel = paper.map_or(WIDTH, |own| (own.px() / columns as f64).min(WIDTH));
+    let high = HEIGHT * panel / WIDTH + paper.map_or(0.0, |_| 24.0);
+    let width = columns as f64 * panel + BESIDE;
+    let mut drawing = Drawing::at_width(paper, width, TOP + rows as f64 * high + 8.0);
     let title = format!("Surface of {}", own.title);
-    drawing.text((24.0, 22.0), Anchor::Start, 13.0, &title);
+    drawing.title(24.0, 26.0, &title);
     for (index, grid) in own.grids.iter().enumerate() {
         let middle = (
-            (index % COLUMNS) as f64 * WIDTH + 0.5 * WIDTH,
-            TOP + (index / COLUMNS) as f64 * HEIGHT + 0.57 * HEIGHT,
+            (index % columns) as f64 * panel + 0.5 * panel,
+            TOP + (index / columns) as f64 * high + 0.57 * high,
         );
-        let scene = scene_of(own, grid, middle);
+        let scene = scene_of(own, grid, (middle, SCALE * panel / WIDTH));
         let others = others_of(fitted, grid);
-        let corner = (
-            middle.0 - 0.5 * WIDTH + 24.0,
-            middle.1 - 0.57 * HEIGHT + 12.0,
-        );
+        let corner = (middle.0 - 0.5 * panel + 24.0, middle.1 - 0.57 * high + 12.0);
         drawing.text(corner, Anchor::Start, 10.5, &others);
         let titles = [grid.factors.0, grid.factors.1].map(|place| factor_title(fitted, place));
         scene.draw_box(
@@ -93,8 +100,11 @@ fn drawing_of(fitted: &FittedSurfaces, outcome: &SurfaceOutcome, own: &SurfacePa
             drawing.spot(scene.place(x, y, z), 5.0, Ink::Series(1));
         }
     }
+    if paper.is_some() {
+        return drawing;
+    }
     let bar = Rectangle {
-        left: columns as f64 * WIDTH + 10.0,
+        left: columns as f64 * panel + 10.0,
         top: TOP + 50.0,
         width: 14.0,
         height: HEIGHT - 130.0,
@@ -110,9 +120,11 @@ struct Scene {
     along: Axis,
     up: Axis,
     middle: (f64, f64),
+    /// px per half width of the floor.
+    scale: f64,
 }
 
-fn scene_of(own: &SurfacePairs, grid: &SurfaceGrid, middle: (f64, f64)) -> Scene {
+fn scene_of(own: &SurfacePairs, grid: &SurfaceGrid, (middle, scale): ((f64, f64), f64)) -> Scene {
     let ends = |values: &[f64]| {
         let (first, last) = (values.first(), values.last());
         (first.copied().unwrap_or(0.0), last.copied().unwrap_or(1.0))
@@ -126,6 +138,7 @@ fn scene_of(own: &SurfacePairs, grid: &SurfaceGrid, middle: (f64, f64)) -> Scene
         along: axis(low, high, 4),
         up: axis(height.low - air, height.high, 5),
         middle,
+        scale,
     }
 }
 
@@ -145,8 +158,8 @@ impl Scene {
         let away = x * sine + y * cosine;
         let rise = z * ELEVATION.cos() + away * ELEVATION.sin();
         (
-            self.middle.0 + SCALE * aside,
-            self.middle.1 - SCALE * (rise - 0.25),
+            self.middle.0 + self.scale * aside,
+            self.middle.1 - self.scale * (rise - 0.25),
         )
     }
 
@@ -212,7 +225,12 @@ impl Scene {
         drawing.text((px - 24.0, py + 34.0), Anchor::End, 11.5, &title);
         let (px, py) = self.project(-1.0, 1.0, TALL);
         let title = with_unit(up, z.power);
-        drawing.text((px - 34.0, py - 10.0), Anchor::Start, 11.5, &title);
+        drawing.text(
+            ((px - 34.0).max(3.0), py - 10.0),
+            Anchor::Start,
+            11.5,
+            &title,
+        );
     }
 
     /// The contours below the surface.
@@ -274,7 +292,7 @@ mod tests {
             values: vec![0.0; 4],
             errors: None,
         };
-        let scene = scene_of(&own, &grid, (0.0, 0.0));
+        let scene = scene_of(&own, &grid, ((0.0, 0.0), SCALE));
         let near = scene.place(0.0, 0.0, 0.0);
         let (right, left) = (scene.place(1.0, 0.0, 0.0), scene.place(0.0, 2.0, 0.0));
         let far = scene.place(1.0, 2.0, 0.0);

@@ -158,10 +158,10 @@ fn draw(
     outcome: &SurfaceOutcome,
     fitted: &FittedSurfaces,
 ) -> Result<(), Error> {
-    let mut paintings = contour_paintings(fitted, outcome)?;
-    paintings.extend(view_paintings(fitted, outcome)?);
+    let mut paintings = contour_paintings(fitted, outcome, folder.width)?;
+    paintings.extend(view_paintings(fitted, outcome, folder.width)?);
     for (model, response) in outcome.responses.iter().zip(&fitted.responses) {
-        paintings.extend(effects_painting(model, confidence)?);
+        paintings.extend(effects_painting(model, confidence, folder.width)?);
         paintings.extend(random_paintings(
             response,
             model,

@@ -23,6 +23,7 @@ use crate::saying::Saying;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use std::path::PathBuf;
 use windfall_campaign::settings::open_options::OpenRequest;
+use windfall_draw::width::Width;
 
 /// From recordings of fruit impacts to contact-force laws.
 #[derive(Debug, Parser)]
@@ -259,9 +260,12 @@ pub struct InspectArguments {
     /// Show only this channel; may be repeated
     #[arg(long = "channel", value_name = "NAME")]
     pub channels: Vec<String>,
-    /// Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same name); one recording only
-    #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
+    /// Write a figure of the channels (SVG, PNG or PDF, by its ending) and its data (CSV, same name); one recording only
+    #[arg(long, value_name = "FILE.svg|FILE.png|FILE.pdf", value_hint = ValueHint::FilePath)]
     pub plot: Option<PathBuf>,
+    /// Width of the figure in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[arg(long, value_name = "LENGTH", requires = "plot")]
+    pub width: Option<Width>,
     /// Write every sample as it was read, as CSV or NumPy array (by its ending); one recording only
     #[arg(long, value_name = "FILE.csv|FILE.npy", value_hint = ValueHint::FilePath)]
     pub export: Option<PathBuf>,

@@ -3,20 +3,23 @@
 use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use windfall_draw::files::FigureFormat;
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 
 /// `windfall report`
 #[derive(Debug, Args)]
 #[command(
     after_help = "Fits what is not in DIR/results.sqlite yet, then writes into DIR/report: report.html \
-(figures, tables, methods, findings and origin in one file that needs no network; print it for a PDF), \
-figures/ (each as SVG, PNG at 300 dots per inch, and CSV), impacts.csv, results.json, inputs.csv \
+(numbered figures and tables, methods, findings and origin in one file that needs no network; print it for a PDF), \
+figures/ (each as SVG, PNG at 300 dots per inch, and CSV, or as --figure-format says), impacts.csv, results.json, inputs.csv \
 (SHA-256 of every file read), windfall.bib and CITATION.cff. Files of other names there are left alone.
 
 Examples:
   windfall report my-campaign
   windfall report my-campaign --group variety --intervals profile
-  windfall report my-campaign --law kuwabara-kono --law hertz --out two-laws --theme dark"
+  windfall report my-campaign --law kuwabara-kono --law hertz --out two-laws --theme dark
+  windfall report my-campaign --width 84mm --figure-format pdf"
 )]
 pub struct ReportArguments {
     /// The campaign directory
@@ -28,6 +31,12 @@ pub struct ReportArguments {
     /// Colours of the files of figures; the page follows the reader's setting
     #[arg(long, value_enum, default_value_t = FigureTheme::Light)]
     pub theme: FigureTheme,
+    /// Width of the files of figures in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[arg(long, value_name = "LENGTH")]
+    pub width: Option<Width>,
+    /// Formats of the files of figures in place of SVG and PNG
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
+    pub figure_format: Vec<FigureFormat>,
     /// Law to fit in place of those of the campaign; may be repeated
     #[arg(long = "law", value_name = "LAW")]
     pub laws: Vec<String>,

@@ -4,6 +4,7 @@ use crate::args::format::Format;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
 use windfall_scene_run::run::columns::SceneTable;
 
 /// `windfall scene picture`
@@ -33,7 +34,10 @@ pub struct ScenePictureArguments {
     /// Colours
     #[arg(long, value_enum, default_value_t = FigureTheme::Light)]
     pub theme: FigureTheme,
-    /// An .svg or .png (300 dots per inch); picture.svg and picture.png in RUN if left out
+    /// Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[arg(long, value_name = "LENGTH")]
+    pub width: Option<Width>,
+    /// An .svg, .png (300 dots per inch) or .pdf; picture.svg and picture.png in RUN if left out
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub out: Option<PathBuf>,
     /// How the result is shown

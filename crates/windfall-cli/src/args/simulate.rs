@@ -3,6 +3,7 @@
 use crate::args::format::{Format, Shown};
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
+use windfall_draw::width::Width;
 use windfall_simulate::compression::SimulateCompressionRequest;
 use windfall_simulate::drops::SimulateDropsRequest;
 use windfall_simulate::repeats::SimulateRepeatsRequest;
@@ -93,10 +94,13 @@ pub struct SimulateRepeatsArguments {
 pub struct SimulateImpactArguments {
     #[command(flatten)]
     pub request: ImpactRequest,
-    /// Write a figure of the impact, loop and force over time (SVG or PNG, by its ending), and its
+    /// Write a figure of the impact, loop and force over time (SVG, PNG or PDF, by its ending), and its
     /// data (CSV, same name)
-    #[arg(long, value_name = "FILE.svg|FILE.png", value_hint = ValueHint::FilePath)]
+    #[arg(long, value_name = "FILE.svg|FILE.png|FILE.pdf", value_hint = ValueHint::FilePath)]
     pub plot: Option<PathBuf>,
+    /// Width of the figure in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that size
+    #[arg(long, value_name = "LENGTH", requires = "plot")]
+    pub width: Option<Width>,
     #[command(flatten)]
     pub shown: Shown,
 }

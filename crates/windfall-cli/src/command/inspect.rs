@@ -59,7 +59,7 @@ fn look_through(
         }
     }
     if let Some(path) = &arguments.plot {
-        tell_written(write_figure(path, &inspections)?);
+        tell_written(write_figure(path, &inspections, arguments.width)?);
     }
     if let Some(path) = &arguments.export {
         let [file] = files.as_slice() else {

@@ -20,6 +20,8 @@ pub fn run(arguments: &ReportArguments) -> anyhow::Result<()> {
         },
         out: arguments.out.clone(),
         theme: arguments.theme,
+        width: arguments.width,
+        formats: arguments.figure_format.clone(),
     };
     let work = || {
         let report = |progress: Progress| report_campaign(&arguments.directory, &request, progress);

@@ -20,6 +20,7 @@ pub fn picture(arguments: &ScenePictureArguments) -> anyhow::Result<()> {
             .map(|text| positive("--largest-force", text, "N"))
             .transpose()?,
         theme: arguments.theme,
+        width: arguments.width,
         out: arguments.out.clone(),
     };
     let work = || draw_scene(&arguments.run, &request);

@@ -66,7 +66,7 @@ fn impact(arguments: &SimulateImpactArguments) -> anyhow::Result<()> {
     let work = || {
         let impact = impact_of_event(&event)?;
         if let Some(path) = &arguments.plot {
-            tell_written(write_impact_figure(path, &event)?);
+            tell_written(write_impact_figure(path, &event, arguments.width)?);
         }
         Ok::<_, Error>(impact)
     };

@@ -371,7 +371,7 @@ fn rejects_what_cannot_be_drawn_or_recorded() {
         ("--from", "30 deg", &["--from", "elevation"]),
         ("--from", "a,b", &["--from"]),
         ("--largest-force", "0 N", &["--largest-force", "above zero"]),
-        ("--out", "a.pdf", &[".svg or .png"]),
+        ("--out", "a.gif", &[".svg, .png or .pdf"]),
         ("--out", "none/a.svg", &["none/a.svg", "write"]),
     ] {
         refused(&["scene", "picture", "s/scene.run", option, value], words);

@@ -140,6 +140,7 @@ def inspect(
     presets: bool = False,
     channel: Value | Sequence[Value] | None = None,
     plot: Path | None = None,
+    width: Value | None = None,
     export: Path | None = None,
     file_format: Value | None = None,
     separator: Value | None = None,
@@ -163,8 +164,10 @@ def inspect(
     * `preset`: Program that wrote the recordings, which says what their columns are called
     * `presets`: List the presets, with the exports that they were made from
     * `channel`: Show only this channel; may be repeated
-    * `plot`: Write a figure of the channels (SVG or PNG, by its ending) and its data (CSV, same
-      name); one recording only
+    * `plot`: Write a figure of the channels (SVG, PNG or PDF, by its ending) and its data (CSV,
+      same name); one recording only
+    * `width`: Width of the figure in print, as a journal asks for it: 84mm, 174mm; letters are 8
+      pt at that size
     * `export`: Write every sample as it was read, as CSV or NumPy array (by its ending); one
       recording only
     * `file_format`: Format, whatever the first bytes say: text, lvm, tdms, mat, hdf5, wav, uff58,
@@ -188,6 +191,7 @@ def inspect(
             "--presets": presets,
             "--channel": channel,
             "--plot": plot,
+            "--width": width,
             "--export": export,
             "--file-format": file_format,
             "--separator": separator,
@@ -232,6 +236,8 @@ def fit_campaign(
     refit: bool = False,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     detail: Path | None = None,
     card: Path | None = None,
     threads: int | None = None,
@@ -291,6 +297,9 @@ def fit_campaign(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `detail`: Write samples, residuals, weights, covariance and draws of each fit into this
       directory, as ID-LAW.json for arviz.from_json; fits every impact once more
     * `card`: Write the law as a law card: the median fruit, how fruit differ, and in what it was
@@ -346,6 +355,8 @@ def fit_campaign(
             "--refit": refit,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--detail": detail,
             "--card": card,
             "--threads": threads,
@@ -381,6 +392,8 @@ def laws(
     quantities: Value | Sequence[Value] | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     refit: bool = False,
     threads: int | None = None,
     out: Path | None = None,
@@ -400,6 +413,9 @@ def laws(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `refit`: Find the answer anew, even where nothing has changed since it was found
     * `threads`: Threads; all cores if left out
     * `out`: Write the result into a file, too: .csv, .json or .txt
@@ -413,6 +429,8 @@ def laws(
             "--quantities": quantities,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--refit": refit,
             "--threads": threads,
             "--out": out,
@@ -489,6 +507,8 @@ def report(
     *,
     out: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     law: Value | Sequence[Value] | None = None,
     free: Value | Sequence[Value] | None = None,
     intervals: Literal["asymptotic", "profile", "bootstrap", "posterior"] | None = None,
@@ -506,6 +526,9 @@ def report(
     * `out`: Directory to write into in place of DIR/report
     * `theme`: Colours of the files of figures; the page follows the reader's setting [default:
       light]
+    * `width`: Width of the files of figures in print, as a journal asks for it: 84mm, 174mm;
+      letters are 8 pt at that size
+    * `figure_format`: Formats of the files of figures in place of SVG and PNG
     * `law`: Law to fit in place of those of the campaign; may be repeated
     * `free`: Parameter to estimate although it has a value; may be repeated
     * `intervals`: How the 95 % intervals are made
@@ -518,6 +541,8 @@ def report(
         {
             "--out": out,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--law": law,
             "--free": free,
             "--intervals": intervals,
@@ -537,6 +562,8 @@ def calibrate(
     way: Literal["waveform", "features", "design"] | Sequence[Literal["waveform", "features", "design"]] | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     tables: Table | None = None,
     card: Path | None = None,
     profile: bool = False,
@@ -555,6 +582,9 @@ def calibrate(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `tables`: Write all tables as CSV and text into this directory
     * `card`: Write the calibrated law as a law card
     * `profile`: Intervals from the profile of the sum of squares, which takes longer, in place of
@@ -569,6 +599,8 @@ def calibrate(
             "--way": way,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--tables": tables,
             "--card": card,
             "--profile": profile,
@@ -603,6 +635,7 @@ def plan_mean(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -633,9 +666,11 @@ def plan_mean(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -666,6 +701,7 @@ def plan_mean(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -702,6 +738,7 @@ def plan_difference(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -737,9 +774,11 @@ def plan_difference(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -774,6 +813,7 @@ def plan_difference(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -807,6 +847,7 @@ def plan_groups(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -838,9 +879,11 @@ def plan_groups(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -872,6 +915,7 @@ def plan_groups(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -908,6 +952,7 @@ def plan_slope(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -944,9 +989,11 @@ def plan_slope(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -981,6 +1028,7 @@ def plan_slope(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -1014,6 +1062,7 @@ def plan_model(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -1045,9 +1094,11 @@ def plan_model(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -1078,6 +1129,7 @@ def plan_model(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -1118,6 +1170,7 @@ def plan_surface(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -1158,9 +1211,11 @@ def plan_surface(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -1198,6 +1253,7 @@ def plan_surface(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -1227,6 +1283,7 @@ def plan_population(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -1253,9 +1310,11 @@ def plan_population(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
@@ -1277,6 +1336,7 @@ def plan_population(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -1308,6 +1368,7 @@ def plan_critical_energy(
     budget: float | None = None,
     figure: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -1339,9 +1400,11 @@ def plan_critical_energy(
     * `cost_fruit`: What a fruit costs before it is struck
     * `cost_impact`: What an impact costs
     * `budget`: What the study may cost
-    * `figure`: Draw power or half-width against the number of fruit (SVG or PNG, by its ending),
-      with its data (CSV, same name)
+    * `figure`: Draw power or half-width against the number of fruit (SVG, PNG or PDF, by its
+      ending), with its data (CSV, same name)
     * `theme`: Colours of the figure [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
     * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
@@ -1368,6 +1431,7 @@ def plan_critical_energy(
             "--budget": budget,
             "--figure": figure,
             "--theme": theme,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -1905,6 +1969,7 @@ def simulate_impact(
     driving_acceleration: Value | None = None,
     end: Literal["force-zero", "gap-zero"] | None = None,
     plot: Path | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -1922,8 +1987,10 @@ def simulate_impact(
     * `driving_acceleration`: Acceleration towards the fruit before and during contact, such as
       "9.81 m/s^2" [default: 0 m/s^2, and 9.80665 m/s^2 with --height]
     * `end`: When the contact is over [default: force-zero]
-    * `plot`: Write a figure of the impact, loop and force over time (SVG or PNG, by its ending),
-      and its data (CSV, same name)
+    * `plot`: Write a figure of the impact, loop and force over time (SVG, PNG or PDF, by its
+      ending), and its data (CSV, same name)
+    * `width`: Width of the figure in print, as a journal asks for it: 84mm, 174mm; letters are 8
+      pt at that size
     * `out`: Write the result into a file, too: .csv, .json or .txt
     """
     return call(
@@ -1938,6 +2005,7 @@ def simulate_impact(
             "--driving-acceleration": driving_acceleration,
             "--end": end,
             "--plot": plot,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -2545,6 +2613,7 @@ def scene_picture(
     from_: Value | None = None,
     largest_force: Value | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
     out: Path | None = None,
     force: bool = False,
     also_read: Path | Sequence[Path] = (),
@@ -2559,7 +2628,10 @@ def scene_picture(
     * `from_`: From where: azimuth from x towards y and elevation, as "-62 deg,24 deg"
     * `largest_force`: Force of the last colour, as "100 N"; the largest of the scene if left out
     * `theme`: Colours [default: light]
-    * `out`: An .svg or .png (300 dots per inch); picture.svg and picture.png in RUN if left out
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `out`: An .svg, .png (300 dots per inch) or .pdf; picture.svg and picture.png in RUN if left
+      out
     """
     return call(
         "scene picture",
@@ -2569,6 +2641,7 @@ def scene_picture(
             "--from": from_,
             "--largest-force": largest_force,
             "--theme": theme,
+            "--width": width,
             "--out": out,
         },
         json=True,
@@ -2688,6 +2761,8 @@ def summary(
     confidence: float | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -2706,6 +2781,9 @@ def summary(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -2722,6 +2800,8 @@ def summary(
             "--confidence": confidence,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -2744,6 +2824,8 @@ def compare(
     confidence: float | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     measured: Value | None = None,
@@ -2770,6 +2852,9 @@ def compare(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -2792,6 +2877,8 @@ def compare(
             "--confidence": confidence,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--measured": measured,
@@ -2837,6 +2924,8 @@ def regress(
     predict: Table | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -2894,6 +2983,9 @@ def regress(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -2933,6 +3025,8 @@ def regress(
             "--predict": predict,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--out": out,
@@ -2963,6 +3057,8 @@ def surface(
     grid_points: int | None = None,
     figures: Path | None = None,
     theme: Literal["light", "dark"] | None = None,
+    width: Value | None = None,
+    figure_format: Literal["svg", "png", "pdf"] | Sequence[Literal["svg", "png", "pdf"]] | None = None,
     missing: Value | Sequence[Value] | None = None,
     levels: Value | Sequence[Value] | None = None,
     out: Path | None = None,
@@ -2998,6 +3094,9 @@ def surface(
     * `figures`: Write figures into this directory: each as SVG, PNG (300 dots per inch) and its
       data as CSV
     * `theme`: Colours of the figures [default: light]
+    * `width`: Width in print, as a journal asks for it: 84mm, 174mm; letters are 8 pt at that
+      size
+    * `figure_format`: Formats of the figures in place of SVG and PNG; the data are always CSV
     * `missing`: Words that stand for a missing value, separated by commas; a blank cell always
       does [default: NA]
     * `levels`: The levels of a column in their order, the reference first:
@@ -3025,6 +3124,8 @@ def surface(
             "--grid-points": grid_points,
             "--figures": figures,
             "--theme": theme,
+            "--width": width,
+            "--figure-format": figure_format,
             "--missing": missing,
             "--levels": levels,
             "--out": out,

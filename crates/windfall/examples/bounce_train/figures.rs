@@ -34,6 +34,7 @@ fn panel(x: (&str, &str), y: (&str, &str), series: Vec<Series>) -> Panel {
         y_unit: y.1.to_owned(),
         series,
         marks: Vec::new(),
+        equal: false,
     }
 }
 
