@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import json
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -213,6 +215,20 @@ def test_takes_quantities_in_their_units(rig: wf.Pendulum, arrays: dict[str, Any
     with pytest.raises(ValueError, match="arm: expected a quantity of"):
         wrong = dataclasses.replace(rig, arm=0.505 * unit.kilogram)
         wf.fit(**arrays, rig=wrong, law=LAW)
+
+
+def test_draws_go_to_arviz(rig: wf.Pendulum, arrays: dict[str, Any]) -> None:
+    fit = wf.fit(**arrays, rig=rig, law=LAW, intervals="posterior")
+    with warnings.catch_warnings():
+        # It will be another package.
+        warnings.simplefilter("ignore", FutureWarning)
+        arviz = importlib.import_module("arviz")
+    data = fit.to_arviz()
+    k = data.posterior["k"]
+    assert float(k.mean()) == pytest.approx(fit.params["k"].value, rel=0.01)
+    assert float(k.std()) == pytest.approx(fit.params["k"].sd, rel=0.3)
+    assert arviz.rhat(data)["k"] < 1.05
+    assert np.array_equal(data.observed_data["force"], fit.detail["observed_data"]["force"])
 
 
 def test_draws_every_quantity(rig: wf.Pendulum, arrays: dict[str, Any]) -> None:

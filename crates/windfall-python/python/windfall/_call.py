@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol, Union
 
 from windfall import _native
@@ -29,11 +30,16 @@ class WriteCsv(Protocol):
 
 
 Path = Union[str, "os.PathLike[str]"]
-"""A file or a directory."""
+"""A file or a directory. One that is read may lie where fsspec finds it, "s3://bucket/study": it
+is copied for the call, and what is written beside it is lost with the copy."""
 Table = Union[Path, ToCsv, WriteCsv]
 """A file with a table, or a data frame of pandas (without its index) or polars."""
 Value = Union[str, int, float]
 """A value as on the command line: text with a unit, a name, a number."""
+
+
+_REMOTE = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]+://")
+"""How the place of a file begins that is not a path: "s3://", "simplecache::https://"."""
 
 
 def call(
@@ -83,7 +89,7 @@ def outcome(text: str, messages: str, status: int) -> Result:
 
 
 class Words:
-    """Words of a command line, and the files of data frames that they name."""
+    """Words of a command line, and the files of data frames and copies that they name."""
 
     def __init__(self) -> None:
         self._folder: TemporaryDirectory[str] | None = None
@@ -124,23 +130,42 @@ class Words:
             value.write_csv(path)
             return path
         if isinstance(value, os.PathLike):
-            return os.fsdecode(value)
+            value = os.fsdecode(value)
+        if isinstance(value, str) and _REMOTE.match(value):
+            return self._copied(value)
         if isinstance(value, bool) or not isinstance(value, (str, int, float)):
             kind = type(value).__name__
             raise TypeError(f"{value!r}: expected text, a number, a path or a table, found {kind}")
         return str(value)
 
+    def _copied(self, url: str) -> str:
+        """The copy of a file or directory that fsspec finds, under its own name."""
+        try:
+            fsspec: Any = import_module("fsspec")
+        except ImportError as error:
+            raise ImportError(f"{url}: to read it, install fsspec: pip install fsspec") from error
+        system, path = fsspec.core.url_to_fs(url)
+        place = os.path.join(self._place(), str(len(self.files)))
+        copy = os.path.join(place, os.path.basename(path.rstrip("/")))
+        os.makedirs(place)
+        system.get(path, copy, recursive=system.isdir(path))
+        self.files.append(copy)
+        return copy
+
     def _path(self) -> str:
+        self.files.append(os.path.join(self._place(), f"{len(self.files)}.csv"))
+        return self.files[-1]
+
+    def _place(self) -> str:
         if self._folder is None:
             # Only few calls need it, and it takes as long to import as all the rest.
             from tempfile import TemporaryDirectory
 
             self._folder = TemporaryDirectory(prefix="windfall-")
-        self.files.append(os.path.join(self._folder.name, f"{len(self.files)}.csv"))
-        return self.files[-1]
+        return self._folder.name
 
     def without_files(self, text: str) -> str:
-        """Messages that do not name the files of data frames."""
+        """Messages that do not name the files of data frames and the copies."""
         for file in self.files:
             text = text.replace(file, "the data frame")
         return text

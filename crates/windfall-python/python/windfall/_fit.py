@@ -122,6 +122,11 @@ class Fit:
         detail: dict[str, Any] = json.loads(self._native.detail(self._place))
         return detail
 
+    def to_arviz(self) -> Any:
+        """`detail` as ArviZ has it: draws (with `intervals="posterior"`), samples, residuals."""
+        arviz: Any = import_module("arviz")
+        return arviz.from_dict(**self.detail)
+
     @property
     def estimates(self) -> tuple[str, ...]:
         """Names of what was estimated, in the order of `cov`."""

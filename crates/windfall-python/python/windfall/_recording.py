@@ -150,6 +150,8 @@ def read(
 ) -> Recording:
     """Reads a recording: text, LVM, TDMS, MAT, HDF5, WAV, UFF58, sigrok, xlsx, ods, npy, zip.
 
+    * `path`: a file, or where fsspec finds it: "s3://bucket/apple.tdms"
+
     What is left out is found out; the arguments are those of `inspect`. Samples are those of
     the file, in its units.
     """
@@ -166,4 +168,5 @@ def read(
     }
     with Words() as words:
         given = [word for option in options.items() for word in words.of_option(*option)]
-    return Recording(os.fsdecode(path), _native.read([*given, "--", os.fsdecode(path)]))
+        native = _native.read([*given, "--", *words.of_values(path)])
+    return Recording(os.fsdecode(path), native)
