@@ -18,7 +18,8 @@ use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::named::grouped;
 use windfall_files::on_threads::on_threads;
-use windfall_files::progress::Progress;
+use windfall_files::option_value::unusable;
+use windfall_files::progress::{Progress, quiet};
 use windfall_files::provenance::{REVISION, VERSION, digest_text};
 
 /// Recordings that a report shows one by one, at most, besides one of each group.
@@ -159,6 +160,27 @@ pub fn reported_campaign<K: Measurement>(
             outcome: measured.into_outcome(),
         })
     })
+}
+
+/// Figures of what the store holds: of one recording, or those of the whole. Nothing is
+/// evaluated anew or written.
+///
+/// * `item`: id of a recording; `None` for the whole, of kinds that draw it
+///
+/// # Errors
+/// The campaign or its store cannot be read, or it has no such recording.
+pub fn stored_figures<K: Measurement>(
+    directory: &Path,
+    item: Option<&str>,
+) -> Result<Vec<NamedFigure>, Error> {
+    let measured = Measured::of(K::read(directory)?, Reuse::Only, &quiet)?;
+    let Some(item) = item else {
+        return Ok(measured.results.figures.map_or_else(Vec::new, |own| own.1));
+    };
+    let mut entries = measured.campaign.shared().entries.iter();
+    let entry = entries.find(|entry| entry.id == item);
+    let entry = entry.ok_or_else(|| unusable(item.to_owned(), "is no id in impacts.csv"))?;
+    Ok(measured.figure(entry)?.into_iter().collect())
 }
 
 /// A campaign with its settings overridden by the options.

@@ -243,7 +243,8 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
         }
     }
     Ok(StoredResults {
-        outcome: (outcome.results() > 0).then_some(outcome),
+        // Where everything failed, its reasons are a result.
+        outcome: (outcome.results() + outcome.failed().len() > 0).then_some(outcome),
         pending,
         time: Some(run.time),
     })
