@@ -47,9 +47,11 @@ pub fn tables_of_whole(outcome: &MeasuredOutcome) -> Vec<CaptionedTable> {
 }
 
 /// Tables of every recording and every part of one.
-pub fn tables_of_each(outcome: &MeasuredOutcome) -> Vec<CaptionedTable> {
+///
+/// * `title`: "Each recording", or what else they are
+pub fn tables_of_each(outcome: &MeasuredOutcome, title: &str) -> Vec<CaptionedTable> {
     let shown = outcome.shown;
-    let mut tables = tables_of("recording", "Each recording", &outcome.impacts, shown.items);
+    let mut tables = tables_of("recording", title, &outcome.impacts, shown.items);
     let parts = tables_of("part", "Each bounce", &outcome.parts, shown.parts);
     tables.extend(parts);
     tables
@@ -59,7 +61,7 @@ fn every_item(outcome: &MeasuredOutcome) -> Section {
     let rows = outcome.impacts.len().max(outcome.parts.len());
     let words = left_out(rows, "impacts.csv and results.json");
     Section {
-        tables: tables_of_each(outcome),
+        tables: tables_of_each(outcome, "Each recording"),
         ..Section::of_words("Each recording", words.into_iter().collect())
     }
 }

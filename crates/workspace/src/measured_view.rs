@@ -78,7 +78,7 @@ pub fn measured_view(directory: &Path, item: Option<&str>) -> Result<MeasuredVie
     let tables = match item {
         Some(id) => {
             only(&mut outcome, id);
-            tables_of_each(&outcome)
+            tables_of_each(&outcome, "This recording")
         }
         None => tables_of_whole(&outcome),
     };

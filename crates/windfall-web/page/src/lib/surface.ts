@@ -1,6 +1,7 @@
 /** Response surfaces at settings of their factors, and what is wanted of them. */
 
-import type { FactorOutcome, SurfaceModel } from "../api/types";
+import type { DataTable, FactorOutcome, SurfaceModel } from "../api/types";
+import { explaining } from "./columns";
 import { evaluate } from "./polynomial";
 
 /** Value of a fitted response at settings of the factors. */
@@ -20,6 +21,32 @@ export function perturbation(model: SurfaceModel, factors: FactorOutcome[], sett
     if (found !== null) points.push([(at - settings[of]!) / half, found]);
   }
   return points;
+}
+
+/** Terms of the models of so many factors, with the constant. */
+const TERMS: [string, (factors: number) => number][] = [
+  ["quadratic", (n) => ((n + 1) * (n + 2)) / 2],
+  ["2fi", (n) => 1 + (n * (n + 1)) / 2],
+  ["linear", (n) => 1 + n],
+];
+
+/** A first guess of factors, response and model, which the rows of the table can tell: runs
+ *  of a design have few levels of each factor, and responses behind the factors. */
+export function firstGuess(table: DataTable): { factors: string[]; response: string | null; model: string } {
+  const rows = table.rows.length;
+  const most = Math.max(7, rows / 3);
+  const candidates = explaining(table).filter((column) => column.numbers);
+  // What differs in every row was not set to levels.
+  const few = candidates.slice(0, -1).filter(({ levels }) => levels <= most && levels < rows);
+  for (let n = Math.min(few.length, 4); n > 0; n -= 1) {
+    const factors = few.slice(0, n);
+    const bent = factors.every(({ levels }) => levels > 2);
+    const model = TERMS.find(([name, terms]) => rows > terms(n) && (bent || name !== "quadratic"));
+    const names = factors.map(({ name }) => name);
+    const response = candidates.find(({ name }) => !names.includes(name));
+    if (model && response) return { factors: names, response: response.name, model: model[0] };
+  }
+  return { factors: [], response: null, model: "quadratic" };
 }
 
 /** What is wanted of a response, as it is asked for. */
