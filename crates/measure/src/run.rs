@@ -162,25 +162,34 @@ pub fn reported_campaign<K: Measurement>(
     })
 }
 
-/// Figures of what the store holds: of one recording, or those of the whole. Nothing is
+/// Figures of the whole of what the store holds, of kinds that draw it. Nothing is
 /// evaluated anew or written.
 ///
-/// * `item`: id of a recording; `None` for the whole, of kinds that draw it
+/// # Errors
+/// The campaign or its store cannot be read.
+pub fn stored_figures<K: Measurement>(directory: &Path) -> Result<Vec<NamedFigure>, Error> {
+    let measured = Measured::of(K::read(directory)?, Reuse::Only, &quiet)?;
+    Ok(measured.results.figures.map_or_else(Vec::new, |own| own.1))
+}
+
+/// What the store holds of one recording and of others of its specimen, and its figure,
+/// where its kind draws single recordings. Nothing is evaluated anew or written.
 ///
 /// # Errors
 /// The campaign or its store cannot be read, or it has no such recording.
-pub fn stored_figures<K: Measurement>(
+pub fn stored_item<K: Measurement>(
     directory: &Path,
-    item: Option<&str>,
-) -> Result<Vec<NamedFigure>, Error> {
-    let measured = Measured::of(K::read(directory)?, Reuse::Only, &quiet)?;
-    let Some(item) = item else {
-        return Ok(measured.results.figures.map_or_else(Vec::new, |own| own.1));
-    };
-    let mut entries = measured.campaign.shared().entries.iter();
-    let entry = entries.find(|entry| entry.id == item);
-    let entry = entry.ok_or_else(|| unusable(item.to_owned(), "is no id in impacts.csv"))?;
-    Ok(measured.figure(entry)?.into_iter().collect())
+    id: &str,
+) -> Result<(MeasuredOutcome, Option<NamedFigure>), Error> {
+    let mut campaign = K::read(directory)?;
+    let entries = &mut campaign.shared_mut().entries;
+    let entry = entries.iter().find(|entry| entry.id == id).cloned();
+    let entry = entry.ok_or_else(|| unusable(id.to_owned(), "is no id in impacts.csv"))?;
+    // All taps of a fruit say which of their resonances is its first mode.
+    entries.retain(|other| other.specimen == entry.specimen);
+    let measured = Measured::of(campaign, Reuse::Only, &quiet)?;
+    let figure = measured.figure(&entry)?;
+    Ok((measured.into_outcome(), figure))
 }
 
 /// A campaign with its settings overridden by the options.

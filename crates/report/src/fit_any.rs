@@ -15,7 +15,9 @@ use windfall_measure::kind::Measurement;
 use windfall_measure::measured::MeasuredOutcome;
 use windfall_measure::relaxation::read::RelaxationCampaign;
 use windfall_measure::repeats::read::RepeatsCampaign;
-use windfall_measure::run::{ReportedItems, measure_campaign, reported_campaign, stored_figures};
+use windfall_measure::run::{
+    ReportedItems, measure_campaign, reported_campaign, stored_figures, stored_item,
+};
 use windfall_measure::taps::read::AcousticCampaign;
 
 /// What is done with campaigns of a kind that fits no impacts.
@@ -26,8 +28,10 @@ pub struct MeasurementWork {
     pub fit: fn(&Path, &FitRequest, Progress) -> Result<MeasuredOutcome, Error>,
     /// Evaluates a campaign for a report.
     pub report: fn(&Path, &FitRequest, Progress) -> Result<ReportedItems, Error>,
-    /// Figures of what the store holds: of the recording of an id, or of the whole.
-    pub figures: fn(&Path, Option<&str>) -> Result<Vec<NamedFigure>, Error>,
+    /// Figures of the whole of what the store holds.
+    pub figures: fn(&Path) -> Result<Vec<NamedFigure>, Error>,
+    /// What the store holds of the recording of an id, and its figure.
+    pub item: fn(&Path, &str) -> Result<(MeasuredOutcome, Option<NamedFigure>), Error>,
 }
 
 impl MeasurementWork {
@@ -37,6 +41,7 @@ impl MeasurementWork {
             fit: measure_campaign::<K>,
             report: reported_campaign::<K>,
             figures: stored_figures::<K>,
+            item: stored_item::<K>,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! What the page shows of a campaign that fits no impacts: the tables of its report and the
 //! figures that `fit` draws, of the whole or of one recording.
 
-use crate::workspace::stored_results;
+use crate::workspace::{stored_results, with_reasons};
 use serde::Serialize;
 use std::path::Path;
-use windfall_campaign::settings::kind::campaign_kind;
+use windfall_campaign::settings::kind::{STORE_FILE, campaign_kind};
+use windfall_campaign::store::runs::latest_run;
 use windfall_draw::files::NamedFigure;
 use windfall_draw::page::CaptionedTable;
 use windfall_draw::theme::PAGE;
@@ -64,29 +65,38 @@ pub fn measured_view(directory: &Path, item: Option<&str>) -> Result<MeasuredVie
         let problem = "fits impacts, each of which has a live fit";
         return Err(unusable(kind.name().to_owned(), problem));
     };
-    let figures = (measurement.figures)(directory, item)?;
-    let figures = figures.iter().map(shown_figure).collect();
-    let stored = stored_results(directory)?.outcome;
-    let Some(AnyOutcome::Measured(mut outcome)) = stored else {
-        return Ok(MeasuredView {
-            tables: Vec::new(),
-            figures,
-            findings: Vec::new(),
-            failed: Vec::new(),
-        });
-    };
-    let tables = match item {
+    let (mut outcome, figures) = match item {
         Some(id) => {
-            only(&mut outcome, id);
-            tables_of_each(&outcome, "This recording")
+            let (outcome, figure) = (measurement.item)(directory, id)?;
+            (Some(outcome), figure.into_iter().collect())
         }
-        None => tables_of_whole(&outcome),
+        None => {
+            let outcome = match stored_results(directory)?.outcome {
+                Some(AnyOutcome::Measured(outcome)) => Some(*outcome),
+                _ => None,
+            };
+            (outcome, (measurement.figures)(directory)?)
+        }
     };
+    let tables = match (&mut outcome, item) {
+        (Some(outcome), Some(id)) => {
+            only(outcome, id);
+            let newest = latest_run(&directory.join(STORE_FILE))?;
+            let failures = newest.map_or_else(Vec::new, |run| run.failures);
+            let own = failures.into_iter().filter(|failure| failure.id == id);
+            with_reasons(&mut outcome.failed, own);
+            tables_of_each(outcome, "This recording")
+        }
+        (Some(outcome), None) => tables_of_whole(outcome),
+        (None, _) => Vec::new(),
+    };
+    let (findings, failed) =
+        outcome.map_or_else(Default::default, |own| (own.findings, own.failed));
     Ok(MeasuredView {
         tables: tables.into_iter().map(shown_table).collect(),
-        figures,
-        findings: outcome.findings,
-        failed: outcome.failed,
+        figures: figures.iter().map(shown_figure).collect(),
+        findings,
+        failed,
     })
 }
 

@@ -30,21 +30,30 @@ const TERMS: [string, (factors: number) => number][] = [
   ["linear", (n) => 1 + n],
 ];
 
+/** Different values of a column in some rows, up to the noise of arithmetic. */
+const levelsIn = (rows: string[][], place: number) =>
+  new Set(rows.map((row) => Number(Number(row[place]).toPrecision(9)))).size;
+
 /** A first guess of factors, response and model, which the rows of the table can tell: runs
  *  of a design have few levels of each factor, and responses behind the factors. */
 export function firstGuess(table: DataTable): { factors: string[]; response: string | null; model: string } {
-  const rows = table.rows.length;
-  const most = Math.max(7, rows / 3);
+  const most = Math.max(7, table.rows.length / 3);
   const candidates = explaining(table).filter((column) => column.numbers);
-  // What differs in every row was not set to levels.
-  const few = candidates.slice(0, -1).filter(({ levels }) => levels <= most && levels < rows);
+  // What differs in nearly every row was not set to levels.
+  const few = candidates
+    .slice(0, -1)
+    .filter(({ levels }) => levels <= most && 2 * levels <= table.rows.length);
   for (let n = Math.min(few.length, 4); n > 0; n -= 1) {
-    const factors = few.slice(0, n);
-    const bent = factors.every(({ levels }) => levels > 2);
-    const model = TERMS.find(([name, terms]) => rows > terms(n) && (bent || name !== "quadratic"));
-    const names = factors.map(({ name }) => name);
-    const response = candidates.find(({ name }) => !names.includes(name));
-    if (model && response) return { factors: names, response: response.name, model: model[0] };
+    const factors = few.slice(0, n).map(({ name }) => name);
+    const response = candidates.find(({ name }) => !factors.includes(name));
+    if (!response) continue;
+    const places = [...factors, response.name].map((name) => table.columns.findIndex((column) => column.name === name));
+    const whole = table.rows.filter((row) => places.every((place) => (row[place] ?? "") !== ""));
+    const levels = places.slice(0, -1).map((place) => levelsIn(whole, place));
+    if (levels.some((of) => of < 2)) continue;
+    const bent = levels.every((of) => of > 2);
+    const model = TERMS.find(([name, terms]) => whole.length > terms(n) && (bent || name !== "quadratic"));
+    if (model) return { factors, response: response.name, model: model[0] };
   }
   return { factors: [], response: null, model: "quadratic" };
 }
