@@ -19,16 +19,16 @@ export const KINDS = {
   },
   compression: {
     template: "compression",
-    many: 100,
+    many: 60,
     words: (directory) => [
       ...["compression", directory, "--law", "kuwabara-kono(k=300000, c=20000)"],
       ...["--rate", "1 mm/s", "--rate", "20 mm/s", "--yield-force", "30 N"],
     ],
   },
-  relaxation: { template: "relaxation", many: 100, words: null },
+  relaxation: { template: "relaxation", many: 60, words: null },
   acoustic: {
     template: "acoustic",
-    many: 500,
+    many: 200,
     words: (directory) => ["tap", directory, "--frequency", "800 Hz", "--quality", "20"],
   },
   repeats: {
@@ -40,7 +40,7 @@ export const KINDS = {
   },
   drop: {
     template: "drop",
-    many: 300,
+    many: 150,
     words: (directory) => [
       ...["drop", directory, "--law", 'adams-impact(k="0.868 N/mm^1.91", e=1.91, c="5.56e-4 N s/mm", d="0.001 mm")'],
       ...["--mass", "4.8 g", "--height", "100 mm", "--height", "500 mm", "--drops", "3"],
