@@ -265,3 +265,25 @@ test("a view that a kind does not have says why", async () => {
   }
   assert.deepEqual(view.troubles.splice(0), []);
 });
+
+test("a fit of which nothing comes says why", async () => {
+  for (const kind of ["drop", "impacts"]) {
+    await visit(page, `#/c/${kind}-new/overview`);
+    await settled(kind);
+    await page.getByRole("button", { name: "Fit", exact: true }).click();
+    await page.getByText(/^Fitted; \d+ failures below\.$/).waitFor();
+    const rows = page.getByRole("region", { name: "Failures" }).locator("tbody tr");
+    assert.ok((await rows.count()) > 1, "failures are listed");
+    await page.getByRole("button", { name: "Close this message" }).first().click();
+  }
+  assert.deepEqual(view.troubles.splice(0), []);
+});
+
+test("results of the command become a table", async () => {
+  await visit(page, "#/c/acoustic-command/regress");
+  await settled("acoustic");
+  await page.getByRole("button", { name: "Make a table of the results" }).click();
+  await page.getByLabel("Table for the regression").waitFor();
+  assert.equal(await page.getByLabel("Table for the regression").inputValue(), "tables/results.csv");
+  assert.deepEqual(view.troubles.splice(0), []);
+});
