@@ -34,6 +34,8 @@ pub struct ShownTable {
 pub struct ShownFigure {
     /// Name of its files, without an ending.
     pub name: String,
+    /// Its title.
+    pub title: String,
     /// What it shows.
     pub caption: String,
     /// The element `svg`, in the colours of the page.
@@ -133,6 +135,7 @@ fn shown_table(table: CaptionedTable) -> ShownTable {
 fn shown_figure(named: &NamedFigure) -> ShownFigure {
     ShownFigure {
         name: named.name.clone(),
+        title: named.figure.title.clone(),
         caption: named.caption.clone(),
         svg: element_of_figure(&named.figure, &PAGE),
     }

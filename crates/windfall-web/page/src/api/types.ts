@@ -413,7 +413,7 @@ export interface SensorOutcome {
 export interface SettingOutcome {
   actual: number[]; coded: number[]; responses: PredictedResponse[]; desirability: number | null;
 }
-export interface ShownFigure { name: string; caption: string; svg: string; }
+export interface ShownFigure { name: string; title: string; caption: string; svg: string; }
 export interface ShownMotion { time: number[]; displacement: number[]; rate: number[]; force: number[]; }
 export interface ShownSamples { time: number[]; value: number[]; }
 export interface ShownTable { caption: string; columns: string[]; rows: string[][]; }
