@@ -9,7 +9,7 @@ use windfall_campaign::store::runs::latest_run;
 use windfall_draw::files::NamedFigure;
 use windfall_draw::page::CaptionedTable;
 use windfall_draw::theme::PAGE;
-use windfall_draw::xy::element_of_figure;
+use windfall_draw::xy::drawing_of_figure;
 use windfall_files::error::Error;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::option_value::unusable;
@@ -137,6 +137,6 @@ fn shown_figure(named: &NamedFigure) -> ShownFigure {
         name: named.name.clone(),
         title: named.figure.title.clone(),
         caption: named.caption.clone(),
-        svg: element_of_figure(&named.figure, &PAGE),
+        svg: drawing_of_figure(&named.figure, None).element(&PAGE, &named.figure.title),
     }
 }

@@ -273,7 +273,7 @@ test("a fit of which nothing comes says why", async () => {
     await page.getByRole("button", { name: "Fit", exact: true }).click();
     await page.getByText(/^Fitted; \d+ failures below\.$/).waitFor();
     const rows = page.getByRole("region", { name: "Failures" }).locator("tbody tr");
-    assert.ok((await rows.count()) > 1, "failures are listed");
+    await rows.nth(1).waitFor();
     await page.getByRole("button", { name: "Close this message" }).first().click();
   }
   assert.deepEqual(view.troubles.splice(0), []);

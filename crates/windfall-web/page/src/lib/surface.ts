@@ -43,10 +43,9 @@ export function firstGuess(table: DataTable): { factors: string[]; response: str
   const few = candidates
     .slice(0, -1)
     .filter(({ levels }) => levels <= most && 2 * levels <= table.rows.length);
-  for (let n = Math.min(few.length, 4); n > 0; n -= 1) {
+  const response = candidates.find((column) => !few.includes(column));
+  for (let n = Math.min(few.length, 4); response && n > 0; n -= 1) {
     const factors = few.slice(0, n).map(({ name }) => name);
-    const response = candidates.find(({ name }) => !factors.includes(name));
-    if (!response) continue;
     const places = [...factors, response.name].map((name) => table.columns.findIndex((column) => column.name === name));
     const whole = table.rows.filter((row) => places.every((place) => (row[place] ?? "") !== ""));
     const levels = places.slice(0, -1).map((place) => levelsIn(whole, place));
