@@ -172,15 +172,20 @@ pub fn stored_figures<K: Measurement>(directory: &Path) -> Result<Vec<NamedFigur
     Ok(measured.results.figures.map_or_else(Vec::new, |own| own.1))
 }
 
-/// What the store holds of one recording and of others of its specimen, and its figure,
-/// where its kind draws single recordings. Nothing is evaluated anew or written.
+/// What the store holds of one recording.
+#[derive(Clone, Debug)]
+pub struct StoredItem {
+    /// Results on it and on the others of its specimen.
+    pub outcome: MeasuredOutcome,
+    /// Its figure, where its kind draws single recordings.
+    pub figure: Option<NamedFigure>,
+}
+
+/// What the store holds of one recording. Nothing is evaluated anew or written.
 ///
 /// # Errors
 /// The campaign or its store cannot be read, or it has no such recording.
-pub fn stored_item<K: Measurement>(
-    directory: &Path,
-    id: &str,
-) -> Result<(MeasuredOutcome, Option<NamedFigure>), Error> {
+pub fn stored_item<K: Measurement>(directory: &Path, id: &str) -> Result<StoredItem, Error> {
     let mut campaign = K::read(directory)?;
     let entries = &mut campaign.shared_mut().entries;
     let entry = entries.iter().find(|entry| entry.id == id).cloned();
@@ -188,8 +193,10 @@ pub fn stored_item<K: Measurement>(
     // All taps of a fruit say which of their resonances is its first mode.
     entries.retain(|other| other.specimen == entry.specimen);
     let measured = Measured::of(campaign, Reuse::Only, &quiet)?;
-    let figure = measured.figure(&entry)?;
-    Ok((measured.into_outcome(), figure))
+    Ok(StoredItem {
+        figure: measured.figure(&entry)?,
+        outcome: measured.into_outcome(),
+    })
 }
 
 /// A campaign with its settings overridden by the options.

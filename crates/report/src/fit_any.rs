@@ -16,7 +16,7 @@ use windfall_measure::measured::MeasuredOutcome;
 use windfall_measure::relaxation::read::RelaxationCampaign;
 use windfall_measure::repeats::read::RepeatsCampaign;
 use windfall_measure::run::{
-    ReportedItems, measure_campaign, reported_campaign, stored_figures, stored_item,
+    ReportedItems, StoredItem, measure_campaign, reported_campaign, stored_figures, stored_item,
 };
 use windfall_measure::taps::read::AcousticCampaign;
 
@@ -31,7 +31,7 @@ pub struct MeasurementWork {
     /// Figures of the whole of what the store holds.
     pub figures: fn(&Path) -> Result<Vec<NamedFigure>, Error>,
     /// What the store holds of the recording of an id, and its figure.
-    pub item: fn(&Path, &str) -> Result<(MeasuredOutcome, Option<NamedFigure>), Error>,
+    pub item: fn(&Path, &str) -> Result<StoredItem, Error>,
 }
 
 impl MeasurementWork {

@@ -69,8 +69,8 @@ pub fn measured_view(directory: &Path, item: Option<&str>) -> Result<MeasuredVie
     };
     let (mut outcome, figures) = match item {
         Some(id) => {
-            let (outcome, figure) = (measurement.item)(directory, id)?;
-            (Some(outcome), figure.into_iter().collect())
+            let item = (measurement.item)(directory, id)?;
+            (Some(item.outcome), item.figure.into_iter().collect())
         }
         None => {
             let outcome = match stored_results(directory)?.outcome {
