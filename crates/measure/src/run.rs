@@ -18,7 +18,8 @@ use windfall_files::error::Error;
 use windfall_files::found::FailureOutcome;
 use windfall_files::named::grouped;
 use windfall_files::on_threads::on_threads;
-use windfall_files::progress::Progress;
+use windfall_files::option_value::unusable;
+use windfall_files::progress::{Progress, quiet};
 use windfall_files::provenance::{REVISION, VERSION, digest_text};
 
 /// Recordings that a report shows one by one, at most, besides one of each group.
@@ -158,6 +159,43 @@ pub fn reported_campaign<K: Measurement>(
             shown: measured.shown_words(shown.len()),
             outcome: measured.into_outcome(),
         })
+    })
+}
+
+/// Figures of the whole of what the store holds, of kinds that draw it. Nothing is
+/// evaluated anew or written.
+///
+/// # Errors
+/// The campaign or its store cannot be read.
+pub fn stored_figures<K: Measurement>(directory: &Path) -> Result<Vec<NamedFigure>, Error> {
+    let measured = Measured::of(K::read(directory)?, Reuse::Only, &quiet)?;
+    Ok(measured.results.figures.map_or_else(Vec::new, |own| own.1))
+}
+
+/// What the store holds of one recording.
+#[derive(Clone, Debug)]
+pub struct StoredItem {
+    /// Results on it and on the others of its specimen.
+    pub outcome: MeasuredOutcome,
+    /// Its figure, where its kind draws single recordings.
+    pub figure: Option<NamedFigure>,
+}
+
+/// What the store holds of one recording. Nothing is evaluated anew or written.
+///
+/// # Errors
+/// The campaign or its store cannot be read, or it has no such recording.
+pub fn stored_item<K: Measurement>(directory: &Path, id: &str) -> Result<StoredItem, Error> {
+    let mut campaign = K::read(directory)?;
+    let entries = &mut campaign.shared_mut().entries;
+    let entry = entries.iter().find(|entry| entry.id == id).cloned();
+    let entry = entry.ok_or_else(|| unusable(id.to_owned(), "is no id in impacts.csv"))?;
+    // All taps of a fruit say which of their resonances is its first mode.
+    entries.retain(|other| other.specimen == entry.specimen);
+    let measured = Measured::of(campaign, Reuse::Only, &quiet)?;
+    Ok(StoredItem {
+        figure: measured.figure(&entry)?,
+        outcome: measured.into_outcome(),
     })
 }
 

@@ -5,6 +5,7 @@ use windfall_campaign::impacts::run::fit_campaign;
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::settings::kind::{CampaignKind, campaign_kind};
 use windfall_campaign::settings::model::Campaign;
+use windfall_draw::files::NamedFigure;
 use windfall_drop::read::DropCampaign;
 use windfall_files::error::Error;
 use windfall_files::progress::Progress;
@@ -14,7 +15,9 @@ use windfall_measure::kind::Measurement;
 use windfall_measure::measured::MeasuredOutcome;
 use windfall_measure::relaxation::read::RelaxationCampaign;
 use windfall_measure::repeats::read::RepeatsCampaign;
-use windfall_measure::run::{ReportedItems, measure_campaign, reported_campaign};
+use windfall_measure::run::{
+    ReportedItems, StoredItem, measure_campaign, reported_campaign, stored_figures, stored_item,
+};
 use windfall_measure::taps::read::AcousticCampaign;
 
 /// What is done with campaigns of a kind that fits no impacts.
@@ -25,6 +28,10 @@ pub struct MeasurementWork {
     pub fit: fn(&Path, &FitRequest, Progress) -> Result<MeasuredOutcome, Error>,
     /// Evaluates a campaign for a report.
     pub report: fn(&Path, &FitRequest, Progress) -> Result<ReportedItems, Error>,
+    /// Figures of the whole of what the store holds.
+    pub figures: fn(&Path) -> Result<Vec<NamedFigure>, Error>,
+    /// What the store holds of the recording of an id, and its figure.
+    pub item: fn(&Path, &str) -> Result<StoredItem, Error>,
 }
 
 impl MeasurementWork {
@@ -33,6 +40,8 @@ impl MeasurementWork {
             read: |directory| K::read(directory).map(|campaign| campaign.shared().clone()),
             fit: measure_campaign::<K>,
             report: reported_campaign::<K>,
+            figures: stored_figures::<K>,
+            item: stored_item::<K>,
         }
     }
 }

@@ -11,7 +11,10 @@ pub fn sections_of_items(reported: &ReportedItems) -> Vec<Section> {
     let outcome = &reported.outcome;
     let mut sections = vec![
         Section::of_words("Methods", reported.methods.clone()),
-        results(outcome),
+        Section {
+            tables: tables_of_whole(outcome),
+            ..Section::of_words("Results", Vec::new())
+        },
     ];
     if !reported.figures.is_empty() {
         sections.push(Section {
@@ -23,8 +26,8 @@ pub fn sections_of_items(reported: &ReportedItems) -> Vec<Section> {
     sections
 }
 
-/// The whole campaign, its groups, its specimens.
-fn results(outcome: &MeasuredOutcome) -> Section {
+/// Tables of the groups, of the whole campaign and of its specimens.
+pub fn tables_of_whole(outcome: &MeasuredOutcome) -> Vec<CaptionedTable> {
     let mut tables = Vec::new();
     let (shown, items) = spread_items(outcome);
     for law in laws_of(&outcome.impacts) {
@@ -40,26 +43,25 @@ fn results(outcome: &MeasuredOutcome) -> Section {
     let (whole, specimens) = (&outcome.whole, &outcome.specimens);
     tables.extend(tables_of("campaign", "Over the campaign", whole, shown));
     tables.extend(tables_of("specimen", "Each fruit", specimens, shown));
-    Section {
-        tables,
-        ..Section::of_words("Results", Vec::new())
-    }
+    tables
 }
 
-/// Every recording and every part of one.
-fn every_item(outcome: &MeasuredOutcome) -> Section {
+/// Tables of every recording and every part of one.
+///
+/// * `title`: "Each recording", or what else they are
+pub fn tables_of_each(outcome: &MeasuredOutcome, title: &str) -> Vec<CaptionedTable> {
     let shown = outcome.shown;
-    let mut tables = tables_of("recording", "Each recording", &outcome.impacts, shown.items);
-    tables.extend(tables_of(
-        "part",
-        "Each bounce",
-        &outcome.parts,
-        shown.parts,
-    ));
+    let mut tables = tables_of("recording", title, &outcome.impacts, shown.items);
+    let parts = tables_of("part", "Each bounce", &outcome.parts, shown.parts);
+    tables.extend(parts);
+    tables
+}
+
+fn every_item(outcome: &MeasuredOutcome) -> Section {
     let rows = outcome.impacts.len().max(outcome.parts.len());
     let words = left_out(rows, "impacts.csv and results.json");
     Section {
-        tables,
+        tables: tables_of_each(outcome, "Each recording"),
         ..Section::of_words("Each recording", words.into_iter().collect())
     }
 }

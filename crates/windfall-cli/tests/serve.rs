@@ -823,3 +823,81 @@ fn a_campaign_made_in_the_page_has_what_was_put_in_and_no_examples() {
         k(&bench)
     );
 }
+
+/// Curves of a figure, whatever its colours.
+fn curves(svg: &str) -> Vec<&str> {
+    let parts = svg.split(" points=\"").skip(1);
+    parts.filter_map(|part| part.split('"').next()).collect()
+}
+
+/// The page shows of drops, taps and compressions what the commands print and draw.
+#[test]
+fn repeats_figures_and_tables_of_the_command_where_no_impacts_are_fitted() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    let law = "adams-impact(k=\"0.868 N/mm^1.91\", e=1.91, c=\"5.56e-4 N s/mm\", d=\"0.001 mm\")";
+    let plate = ["--plate-mass", "0.2 kg", "--plate-stiffness", "645.8 N/mm"];
+    let drops = [
+        &[
+            "drop", "--law", law, "--mass", "4.8 g", "--height", "100 mm", "--drops", "2",
+        ][..],
+        &plate,
+        &["--plate-damping", "0.05247 N s/mm"],
+    ]
+    .concat();
+    let taps = ["tap", "--frequency", "800 Hz", "--quality", "20"];
+    let presses = ["compression", "--law", "kuwabara-kono(k=300000, c=20000)"];
+    for (name, words, item) in [
+        ("drops", &drops[..], "drop-100-2"),
+        ("taps", &taps[..], "fruit-2-1"),
+        ("presses", &presses[..], "fruit-2-1"),
+    ] {
+        let (directory, figures) = (place(name), place(&format!("{name}-figures")));
+        let directory = directory.to_str().unwrap();
+        windfall(&[&["simulate", words[0], directory], &words[1..]].concat()).success();
+        let run = windfall(&["fit", directory, "--figures", figures.to_str().unwrap()]).success();
+        let printed = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+        let running = serve(folder.path(), &[]);
+        let get = |query: &str| running.get(&format!("/api/campaigns/{name}/measured{query}"));
+
+        let shown = get(&format!("?item={item}")).json();
+        let drawn = std::fs::read_to_string(figures.join(format!("{item}.svg"))).unwrap();
+        let svg = shown["figures"][0]["svg"].as_str().unwrap();
+        assert!(!curves(svg).is_empty());
+        assert_eq!(curves(svg), curves(&drawn));
+        assert!(svg.contains("var(--figure-text)"), "{svg}");
+        let rows = shown["tables"][0]["rows"].as_array().unwrap();
+        assert!(!rows.is_empty());
+        for cell in rows.iter().flat_map(|row| row.as_array().unwrap()) {
+            let cell = cell.as_str().unwrap();
+            assert!(printed.contains(cell), "{cell} is not in\n{printed}");
+        }
+        assert_eq!(shown["failed"], json!([]));
+
+        let whole = get("").json();
+        assert_eq!(whole["figures"], json!([]));
+        assert_eq!(get("?item=nobody").status, 422);
+    }
+    // Impacts have their own views.
+    let (other, _) = bench("1");
+    let running = serve(other.path(), &[]);
+    assert_eq!(running.get("/api/campaigns/bench/measured").status, 422);
+}
+
+/// Where no recording can be used any more, the page is told why of each.
+#[test]
+fn tells_why_every_recording_failed() {
+    let (folder, campaign) = bench("2");
+    let running = serve(folder.path(), &[]);
+    let job = running.work("bench", &json!({"work": "fit"}));
+    assert_eq!(job["state"], "done", "{job}");
+    for entry in std::fs::read_dir(campaign.join("raw")).unwrap() {
+        std::fs::remove_file(entry.unwrap().path()).unwrap();
+    }
+    let results = running.get("/api/campaigns/bench/results").json();
+    assert_eq!(results["pending"], 0, "{results}");
+    let failed = results["outcome"]["failed"].as_array().unwrap();
+    assert_eq!(failed.len(), 4);
+    let message = failed[0]["message"].as_str().unwrap();
+    assert!(message.contains("specimen-01-01.csv"), "{message}");
+}

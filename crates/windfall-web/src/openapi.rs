@@ -25,6 +25,7 @@ use utoipa::{Modify, OpenApi};
         crate::api::campaigns::create,
         crate::api::campaigns::campaign,
         crate::api::campaigns::results,
+        crate::api::campaigns::measured,
         crate::api::recordings::recordings,
         crate::api::recordings::recording,
         crate::api::recordings::outline,

@@ -177,6 +177,7 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
     let campaign = Router::new()
         .route("/", get(campaigns::campaign))
         .route("/results", get(campaigns::results))
+        .route("/measured", get(campaigns::measured))
         .route("/events", get(events::campaign_events))
         .route("/recordings", get(recordings::recordings))
         .route("/recording", get(recordings::recording))

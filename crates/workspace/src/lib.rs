@@ -5,6 +5,7 @@ pub mod edit_campaign;
 pub mod equal_command;
 pub mod live_cache;
 pub mod live_fit;
+pub mod measured_view;
 pub mod recording_outline;
 pub mod results_table;
 pub mod scene_runs;

@@ -14,6 +14,7 @@ use windfall_campaign::settings::model::FilePlan;
 use windfall_campaign::store::runs::{RunIdentity, latest_run};
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
+use windfall_files::found::FailureOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::quiet;
 use windfall_files::scratch::sweep_temporary;
@@ -232,21 +233,31 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
         AnyOutcome::Impacts(outcome) => &mut outcome.failed,
         AnyOutcome::Measured(outcome) => &mut outcome.failed,
     };
+    let pending = with_reasons(failed, run.failures);
+    Ok(StoredResults {
+        // Where everything failed, its reasons are a result.
+        outcome: (outcome.results() + outcome.failed().len() > 0).then_some(outcome),
+        pending,
+        time: Some(run.time),
+    })
+}
+
+/// Replaces results that are only missing by the failures of the newest run, which have
+/// their reasons; how many were never tried, or changed since.
+pub(crate) fn with_reasons(
+    failed: &mut Vec<FailureOutcome>,
+    newest: impl IntoIterator<Item = FailureOutcome>,
+) -> usize {
     let all = failed.len();
     failed.retain(|failure| failure.message != PENDING);
     let mut pending = all - failed.len();
-    // Failures of the newest run are listed with their reasons.
-    for failure in run.failures {
+    for failure in newest {
         if pending > 0 && !failed.iter().any(|known| known.id == failure.id) {
             pending -= 1;
             failed.push(failure);
         }
     }
-    Ok(StoredResults {
-        outcome: (outcome.results() > 0).then_some(outcome),
-        pending,
-        time: Some(run.time),
-    })
+    pending
 }
 
 /// A file of recordings.

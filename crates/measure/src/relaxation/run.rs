@@ -95,10 +95,9 @@ impl Measurement for RelaxationCampaign {
         _: Option<&MeasuredItems>,
         _: &MeasuredResults,
     ) -> Result<Option<NamedFigure>, Error> {
-        let recording = read_recording(&self.shared.files, entry)?;
-        let Ok(found) = relaxed(self, entry, &recording) else {
-            return Ok(None);
-        };
+        let found = read_recording(&self.shared.files, entry)
+            .and_then(|recording| relaxed(self, entry, &recording));
+        let Ok(found) = found else { return Ok(None) };
         Ok(Some(NamedFigure {
             name: file_name(&entry.id),
             caption: format!(

@@ -114,6 +114,7 @@ export async function open(browser, server, options = {}) {
     colorScheme: options.colours ?? "light",
     reducedMotion: "reduce",
     acceptDownloads: true,
+    timezoneId: options.timezoneId,
   });
   const page = await context.newPage();
   const troubles = [];

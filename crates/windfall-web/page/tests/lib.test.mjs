@@ -7,7 +7,9 @@ import { runnerImport } from "vite";
 const load = async (path) => (await runnerImport(path, { configFile: false, logLevel: "error" })).module;
 const { bytes, estimate, integer, interval, number, percent, plusMinus, quantity, quantityPlusMinus, unitText } =
   await load("./src/lib/format.ts");
-const { namesColumn, placeholders } = await load("./src/lib/placeholders.ts");
+const { filledIn, namesColumn, placeholders } = await load("./src/lib/placeholders.ts");
+const { entryOf, linksOf, whyNot } = await load("./src/lib/kinds.ts");
+const { firstGuess } = await load("./src/lib/surface.ts");
 const { changes, difference } = await load("./src/lib/diff.ts");
 const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts");
 
@@ -118,4 +120,53 @@ test("names of columns may hold what impacts.csv fills in", () => {
   assert.ok(!namesColumn("{run}: Force (N)", "Run 1: Force _N_"));
   assert.ok(namesColumn("a[1].b\\{x}", "a[1].b\\7"));
   assert.ok(!namesColumn("", "Force"));
+});
+
+test("names of channels are filled in from the row", () => {
+  const cells = { run: "3", side: "left" };
+  assert.equal(filledIn("{run}: Force ({side})", (name) => cells[name] ?? ""), "3: Force (left)");
+  assert.equal(filledIn("force_N", () => "?"), "force_N");
+});
+
+test("a tap and a bounce belong to the recording that they come from", () => {
+  const ids = new Set(["a", "a tap 1", "b"]);
+  for (const [result, entry] of [
+    ["b tap 12", "b"],
+    ["b, bounce 3", "b"],
+    // The table may have such an id itself.
+    ["a tap 1", "a tap 1"],
+    ["c tap 1", "c tap 1"],
+  ]) {
+    assert.equal(entryOf(ids, result), entry);
+  }
+});
+
+test("every kind says which views it has, or why not", () => {
+  const all = ["overview", "recordings", "import", "impact", "item", "table", "laws", "regress", "surface", "calibrate", "report"];
+  for (const kind of ["impacts", "compression", "relaxation", "acoustic", "repeats", "drop"]) {
+    const parts = linksOf(kind).map((link) => link.part);
+    assert.equal(parts.includes("impact"), kind === "impacts");
+    assert.equal(parts.includes("item"), kind !== "impacts");
+    for (const part of all) assert.equal(whyNot(kind, part) === null, part === "import" || parts.includes(part));
+  }
+});
+
+test("a surface begins with what its rows can tell", () => {
+  const table = (names, rows) => ({
+    file: "t.csv",
+    columns: names.map((name) => ({ name, numbers: true })),
+    rows: rows.map((row) => row.map(String)),
+  });
+  const levels = [-1, 0, 1];
+  const squares = levels.flatMap((a) => levels.map((b) => [a, b, a + b * b + 0.1 * a * b]));
+  assert.deepEqual(firstGuess(table(["a", "b", "y"], squares)), { factors: ["a", "b"], response: "y", model: "quadratic" });
+  // Two levels bend nowhere.
+  const corners = [-1, 1].flatMap((a) => [-1, 1].flatMap((b) => [0, 1].map((n) => [a, b, a + b + 0.1 * n + 0.01 * a])));
+  assert.deepEqual(firstGuess(table(["a", "b", "y"], corners)), { factors: ["a", "b"], response: "y", model: "2fi" });
+  // What differs in every row is no factor, and noise of arithmetic no level.
+  const measured = [1, 2, 3, 4, 5, 6].map((i) => [i, i * i, i % 2 ? 0.02 : 0.0199999999999998]);
+  assert.equal(firstGuess(table(["k", "c", "rate"], measured)).factors.length, 0);
+  // Rows with empty cells tell nothing.
+  const gaps = squares.map(([a, b, y], row) => [a, b, row < 2 ? y : ""]);
+  assert.equal(firstGuess(table(["a", "b", "y"], gaps)).factors.length, 0);
 });

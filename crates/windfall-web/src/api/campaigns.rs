@@ -2,16 +2,17 @@
 
 use crate::app::{Answer, App};
 use crate::described::{QuestionProblems, RequestProblems};
-use crate::given::Given;
+use crate::given::{Asked, Given};
 use crate::problem::Problem;
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 use windfall_campaign::settings::template::{TEMPLATES, write_template};
 use windfall_workspace::campaign_view::{CampaignView, view_campaign};
+use windfall_workspace::measured_view::{MeasuredView, measured_view};
 use windfall_workspace::workspace::{CampaignEntry, StoredResults, stored_results};
 
 /// A campaign to create.
@@ -84,4 +85,29 @@ pub(crate) async fn results(
 ) -> Answer<StoredResults> {
     app.answer(id, |_, directory| stored_results(directory))
         .await
+}
+
+/// What of a campaign that fits no impacts.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(crate) struct MeasuredAsked {
+    /// Id of a recording; the whole if left out.
+    item: Option<String>,
+}
+
+/// Stored results of a campaign that fits no impacts, as the report shows them; nothing is
+/// evaluated.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/measured",
+    params(("id" = String, Path, example = "drops"), MeasuredAsked),
+    responses((status = 200, body = MeasuredView), QuestionProblems))]
+pub(crate) async fn measured(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Asked(asked): Asked<MeasuredAsked>,
+) -> Answer<MeasuredView> {
+    app.answer(id, move |_, directory| {
+        measured_view(directory, asked.item.as_deref())
+    })
+    .await
 }

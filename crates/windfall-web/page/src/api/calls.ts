@@ -99,6 +99,8 @@ export const api = {
   create: (body: NewCampaign) => call("POST /api/campaigns", [], { body }),
   campaign: (id: string) => call("GET /api/campaigns/{id}", [id]),
   results: (id: string) => call("GET /api/campaigns/{id}/results", [id]),
+  /** Tables and figures of a campaign that fits no impacts, or of one of its recordings. */
+  measured: (id: string, item?: string) => call("GET /api/campaigns/{id}/measured", [id], { query: { item } }),
   recordings: (id: string) => call("GET /api/campaigns/{id}/recordings", [id]),
   recording: (id: string, file: string) => call("GET /api/campaigns/{id}/recording", [id], { query: { file } }),
   outline: (id: string, query: Calls["GET /api/campaigns/{id}/outline"]["query"], signal?: AbortSignal) =>

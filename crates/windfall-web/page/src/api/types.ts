@@ -255,6 +255,9 @@ export interface MeasuredOutcome {
 export interface MeasuredValue {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string;
 }
+export interface MeasuredView {
+  tables: ShownTable[]; figures: ShownFigure[]; findings: FindingOutcome[]; failed: FailureOutcome[];
+}
 export interface MixedLevelsOutcome { by: string; rows: [string, number][]; test: VariancesTest; }
 export type MixedOutcome = RowCount & ({
   formula: string; response: string; method: string; df_method: string; groups: [string, number][];
@@ -410,8 +413,10 @@ export interface SensorOutcome {
 export interface SettingOutcome {
   actual: number[]; coded: number[]; responses: PredictedResponse[]; desirability: number | null;
 }
+export interface ShownFigure { name: string; title: string; caption: string; svg: string; }
 export interface ShownMotion { time: number[]; displacement: number[]; rate: number[]; force: number[]; }
 export interface ShownSamples { time: number[]; value: number[]; }
+export interface ShownTable { caption: string; columns: string[]; rows: string[][]; }
 export interface SpaceOutcome {
   entered: number; inside: number; mass: number; fruit_share: number; level: number | null; most: number;
   largest_mass: number; largest_level: number | null; residence: ResidenceOutcome | null;
@@ -519,6 +524,7 @@ export interface Calls {
   "PUT /api/campaigns/{id}/exclusion": Call<CampaignView, ExclusionGiven>;
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
+  "GET /api/campaigns/{id}/measured": Call<MeasuredView, undefined, { item?: string }>;
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;
   "GET /api/campaigns/{id}/outline": Call<Outline, undefined, { file: string; channel: string; from?: number; to?: number; points?: number }>;
   "PUT /api/campaigns/{id}/raw": Call<Uploaded, Blob, { file: string }>;

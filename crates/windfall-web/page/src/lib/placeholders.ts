@@ -15,3 +15,7 @@ export function namesColumn(name: string, column: string): boolean {
     .join("");
   return new RegExp(`^${pattern}$`, "s").test(column);
 }
+
+/** A name as a row fills it in, "{run}: Force" as "3: Force". */
+export const filledIn = (name: string, cell: (column: string) => string): string =>
+  name.replace(/\{([^{}]+)\}/g, (_, column: string) => cell(column));

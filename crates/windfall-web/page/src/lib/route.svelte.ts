@@ -1,6 +1,6 @@
 /**
  * Addresses within the page: `#/`, `#/c/CAMPAIGN/PART` or `#/c/CAMPAIGN/PART/ITEM`,
- * where the item is an impact or a file, and `#/s/SCENE`.
+ * where the item is a row of impacts.csv or a file, and `#/s/SCENE`.
  */
 
 const PARTS = [
@@ -8,6 +8,7 @@ const PARTS = [
   "recordings",
   "import",
   "impact",
+  "item",
   "table",
   "laws",
   "regress",

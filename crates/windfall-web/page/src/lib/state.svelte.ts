@@ -28,9 +28,10 @@ class Notices {
   list = $state<Notice[]>([]);
   #next = 0;
 
-  error(error: unknown): void {
+  /** Shows a failure until it is closed; its key, if there is something to say. */
+  error(error: unknown): number | null {
     const text = wordsOf(error);
-    if (text !== null) this.#add("error", text);
+    return text === null ? null : this.#add("error", text);
   }
 
   done(text: string): void {
@@ -123,6 +124,8 @@ export class OpenCampaign {
   changes = $state(0);
   /** Whether the server is unreachable; the browser keeps trying. */
   lost = $state(false);
+  /** What is told of its files as long as they cannot be read. */
+  #told: number | null = null;
   readonly #end: () => void;
 
   constructor(readonly id: string) {
@@ -145,11 +148,20 @@ export class OpenCampaign {
       this.results = results;
       this.problem = null;
       this.changes += 1;
+      this.#settle();
     } catch (error) {
       // Keep what is shown: a file may be half written at this moment.
       if (this.view === null) this.problem = wordsOf(error);
-      else notices.error(error);
+      else {
+        this.#settle();
+        this.#told = notices.error(error);
+      }
     }
+  }
+
+  #settle(): void {
+    if (this.#told !== null) notices.drop(this.#told);
+    this.#told = null;
   }
 
   /** Takes the answer to a change made through the page. */
@@ -159,6 +171,7 @@ export class OpenCampaign {
   }
 
   close(): void {
+    this.#settle();
     this.#end();
   }
 }

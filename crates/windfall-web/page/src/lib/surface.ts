@@ -1,6 +1,7 @@
 /** Response surfaces at settings of their factors, and what is wanted of them. */
 
-import type { FactorOutcome, SurfaceModel } from "../api/types";
+import type { DataTable, FactorOutcome, SurfaceModel } from "../api/types";
+import { explaining } from "./columns";
 import { evaluate } from "./polynomial";
 
 /** Value of a fitted response at settings of the factors. */
@@ -20,6 +21,40 @@ export function perturbation(model: SurfaceModel, factors: FactorOutcome[], sett
     if (found !== null) points.push([(at - settings[of]!) / half, found]);
   }
   return points;
+}
+
+/** Terms of the models of so many factors, with the constant. */
+const TERMS: [string, (factors: number) => number][] = [
+  ["quadratic", (n) => ((n + 1) * (n + 2)) / 2],
+  ["2fi", (n) => 1 + (n * (n + 1)) / 2],
+  ["linear", (n) => 1 + n],
+];
+
+/** Different values of a column in some rows, up to the noise of arithmetic. */
+const levelsIn = (rows: string[][], place: number) =>
+  new Set(rows.map((row) => Number(Number(row[place]).toPrecision(9)))).size;
+
+/** A first guess of factors, response and model, which the rows of the table can tell: runs
+ *  of a design have few levels of each factor, and responses behind the factors. */
+export function firstGuess(table: DataTable): { factors: string[]; response: string | null; model: string } {
+  const most = Math.max(7, table.rows.length / 3);
+  const candidates = explaining(table).filter((column) => column.numbers);
+  // What differs in nearly every row was not set to levels.
+  const few = candidates
+    .slice(0, -1)
+    .filter(({ levels }) => levels <= most && 2 * levels <= table.rows.length);
+  const response = candidates.find((column) => !few.includes(column));
+  for (let n = Math.min(few.length, 4); response && n > 0; n -= 1) {
+    const factors = few.slice(0, n).map(({ name }) => name);
+    const places = [...factors, response.name].map((name) => table.columns.findIndex((column) => column.name === name));
+    const whole = table.rows.filter((row) => places.every((place) => (row[place] ?? "") !== ""));
+    const levels = places.slice(0, -1).map((place) => levelsIn(whole, place));
+    if (levels.some((of) => of < 2)) continue;
+    const bent = levels.every((of) => of > 2);
+    const model = TERMS.find(([name, terms]) => whole.length > terms(n) && (bent || name !== "quadratic"));
+    if (model) return { factors, response: response.name, model: model[0] };
+  }
+  return { factors: [], response: null, model: "quadratic" };
 }
 
 /** What is wanted of a response, as it is asked for. */
