@@ -325,11 +325,15 @@ test("a goal that cannot be is told beside it", async () => {
 });
 
 test("the overview of a campaign of another kind shows its values by group", async () => {
-  await windfall("fit", join(place.directory, "drops"));
+  const printed = await windfall("fit", join(place.directory, "drops"));
   await visit(page, "#/c/drops/overview");
-  const groups = page.getByRole("region", { name: "Parameters by group" });
-  await groups.getByRole("row", { name: /Recordings/ }).waitFor();
-  await groups.getByRole("row", { name: /restitution/ }).first().waitFor();
+  const groups = page.getByRole("region", { name: /^drop: mean ± SD/ });
+  await groups.getByRole("columnheader", { name: "restitution" }).waitFor();
+  for (const group of ["100 mm", "500 mm", "all"]) await groups.getByRole("rowheader", { name: group }).waitFor();
+  // They are the numbers of the command.
+  const cells = await groups.getByRole("cell").allInnerTexts();
+  assert.ok(cells.length >= 3 * 7, cells.join(", "));
+  for (const cell of cells.filter((each) => each !== "–")) assert.ok(printed.includes(cell), `${cell} is not in ${printed}`);
 });
 
 test("drops are calibrated, and the law leaves as a card", async () => {
