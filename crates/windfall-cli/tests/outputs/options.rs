@@ -609,6 +609,7 @@ pub const READ: &[(&str, &str)] = &[
     ("inspect", "files"),
     ("fit", "directory"),
     ("fit", "--laws"),
+    ("fit", "--only"),
     ("laws", "directory"),
     ("population", "directory"),
     ("report", "directory"),
