@@ -130,7 +130,11 @@ export async function open(browser, server, options = {}) {
   });
   const assets = [];
   page.on("requestfinished", (request) => {
-    if (!new URL(request.url()).pathname.startsWith("/api/")) assets.push(request.sizes());
+    if (new URL(request.url()).pathname.startsWith("/api/")) return;
+    const sizes = request.sizes();
+    // A page that is closed knows none: that is an error for `weight` alone.
+    sizes.catch(() => {});
+    assets.push(sizes);
   });
   await page.goto(`${server.address}${options.hash ?? ""}`);
   return {
