@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import fsspec
 import numpy as np
 import pytest
 import windfall as wf
+from windfall._call import WRITTEN
 
 
 @pytest.fixture
@@ -50,3 +52,17 @@ def test_rejects_what_is_not_there(memory: Any) -> None:
     memory.pipe("/empty.csv", b"")
     with pytest.raises(ValueError, match="empty.csv"):
         wf.read("memory://empty.csv")
+
+
+def test_rejects_results_that_would_be_lost(memory: Any, tmp_path: Path) -> None:
+    memory.pipe("/fits.csv", b"id,k\na,1\n")
+    with pytest.raises(ValueError, match="--out memory://fits.csv: windfall writes to this"):
+        wf.summary("memory://fits.csv", value="k", out="memory://fits.csv")
+    assert memory.cat("/fits.csv") == b"id,k\na,1\n"
+    # Every option of the command that writes, by the list that its own tests go through.
+    lists = Path(__file__).parents[2] / "windfall-cli/tests/outputs/options.rs"
+    text = lists.read_text(encoding="utf-8")
+    written = text[text.index("pub const WRITTEN") : text.index("pub const READ")]
+    options = re.findall(r'\(\s*"[a-z ]*",\s*"(--[a-z-]+)"', written)
+    assert len(options) > 50
+    assert set(options) == WRITTEN

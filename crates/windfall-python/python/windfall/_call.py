@@ -41,6 +41,12 @@ Value = Union[str, int, float]
 _REMOTE = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]+://")
 """How the place of a file begins that is not a path: "s3://", "simplecache::https://"."""
 
+WRITTEN = frozenset(
+    "--card --detail --example --export --figure --figures --out --plot --recordings "
+    "--tables".split()
+)
+"""Options that name what is written, which goes to this machine alone."""
+
 
 def call(
     command: str,
@@ -109,6 +115,12 @@ class Words:
         if value is True:
             yield option
             return
+        path = os.fspath(value) if isinstance(value, (str, os.PathLike)) else ""
+        if option in WRITTEN and _REMOTE.match(str(path)):
+            raise ValueError(
+                f"{option} {path}: windfall writes to this machine alone; "
+                "name a path here, and copy what was written"
+            )
         for word in self.of_values(value):
             yield f"{option}={word}"
 

@@ -307,6 +307,8 @@ _requests: dict[Any, _native.FitRequest] = {}
 """Requests by what they were made of: to read one takes as long as to fit an impact, and the
 next recording usually has the same."""
 _REMEMBERED = 8
+_PLAIN = {str, int, float, type(None)}
+"""Types of values that are equal only where they are the same words."""
 
 
 def _request(
@@ -329,8 +331,10 @@ def _request(
         for name, value in options.items():
             words += own.of_option(f"--{name.replace('_', '-')}", value)
         request = _native.FitRequest(words)
-        # The file of a data frame is removed now.
-        if key is not None and not own.files:
+        # The file of a data frame is removed now. A quantity equals one in another unit, whose
+        # words may differ in the last digit.
+        plain = _PLAIN.issuperset(map(type, vars(rig).values()))
+        if key is not None and plain and not own.files:
             if len(_requests) == _REMEMBERED:
                 _requests.clear()
             _requests[key] = request

@@ -29,7 +29,7 @@ _DOUBLE = np.dtype(np.float64)
 def columns_of(samples: Mapping[str, Any]) -> list[tuple[str, bytes]]:
     """Names and doubles of the arrays that are not `None`.
 
-    `ValueError`: an array is not one of real numbers, or is empty.
+    `ValueError`: an array is not one of real numbers.
     """
     unknown = [name for name in samples if name not in _DIMENSIONS]
     if unknown or samples.get("t") is None:
