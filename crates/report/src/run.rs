@@ -297,7 +297,7 @@ fn in_words(options: &str) -> (String, Vec<Vec<String>>) {
 /// Adds an option by its words, or what it consists of.
 fn add_rows(words: &str, value: &Value, rows: &mut Vec<Vec<String>>) {
     let plain = |value: &Value| match value {
-        Value::String(text) => text.replace('_', " "),
+        Value::String(text) => text.clone(),
         Value::Bool(true) => "yes".to_owned(),
         Value::Bool(false) => "no".to_owned(),
         other => other.to_string(),
