@@ -35,38 +35,33 @@ pub fn npy_header(names: &[String], rows: u64) -> Vec<u8> {
 /// * `names`: of the columns
 /// * `columns`: doubles as bytes in the order of this machine, as many in each
 pub fn npy_of_columns(names: &[String], columns: &[&[u8]]) -> Vec<u8> {
-    let row = columns.len() * DOUBLE;
     let rows = columns.first().map_or(0, |own| own.len() / DOUBLE);
     let mut file = npy_header(names, rows as u64);
     let data = file.len();
-    file.resize(data + rows * row, 0);
+    file.resize(data + rows * columns.len() * DOUBLE, 0);
+    let (cells, _) = file[data..].as_chunks_mut::<DOUBLE>();
     for (place, column) in columns.iter().enumerate() {
-        fill(&mut file[data + place * DOUBLE..], column, row);
+        let cells = cells.iter_mut().skip(place).step_by(columns.len());
+        for (cell, double) in cells.zip(column.as_chunks().0) {
+            *cell = f64::from_ne_bytes(*double).to_le_bytes();
+        }
     }
     file
-}
-
-/// Writes a column into every row.
-fn fill(cells: &mut [u8], column: &[u8], row: usize) {
-    for (cell, double) in cells.chunks_mut(row).zip(column.chunks_exact(DOUBLE)) {
-        cell[..DOUBLE].copy_from_slice(&number(double).to_le_bytes());
-    }
 }
 
 /// Doubles that are not finite: the first one with its place, and how many there are.
 ///
 /// * `column`: doubles as bytes in the order of this machine
 pub fn not_finite(column: &[u8]) -> Option<(usize, f64, usize)> {
-    let numbers = column.chunks_exact(DOUBLE).map(number).enumerate();
-    let mut lost = numbers.filter(|own| !own.1.is_finite());
-    let (first, value) = lost.next()?;
-    Some((first, value, 1 + lost.count()))
-}
-
-fn number(double: &[u8]) -> f64 {
-    let mut bytes = [0; DOUBLE];
-    bytes.copy_from_slice(double);
-    f64::from_ne_bytes(bytes)
+    let doubles = column.as_chunks().0.iter();
+    let numbers = doubles.map(|own| f64::from_ne_bytes(*own));
+    // Counted first, several at a time: there are almost always none.
+    let lost = numbers.clone().filter(|own| !own.is_finite()).count();
+    if lost == 0 {
+        return None;
+    }
+    let (first, value) = numbers.enumerate().find(|own| !own.1.is_finite())?;
+    Some((first, value, lost))
 }
 
 #[cfg(test)]

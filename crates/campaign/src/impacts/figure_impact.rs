@@ -126,7 +126,7 @@ fn fitted_motion(
     used: (&Rig, EndRule, &[LawKind]),
 ) -> Option<FittedMotion> {
     Some(FittedMotion {
-        law: outcome.law.clone(),
+        law: outcome.law.to_string(),
         motion: line_of_law(impact, outcome, used)?,
     })
 }

@@ -63,7 +63,7 @@ impl<'a> ImpactTable<'a> {
     pub fn row<'b>(&'b self, impact: &'b ImpactOutcome) -> Vec<Cell<'b>> {
         let names = [&impact.id, &impact.specimen].map(|own| Cell::text(own.as_str()));
         let group = Cell::text(impact.group.as_deref().unwrap_or(""));
-        let rest = [&impact.file, &impact.law].map(|own| Cell::text(own.as_str()));
+        let rest = [impact.file.as_str(), &impact.law].map(Cell::text);
         let mut row: Vec<Cell> = names.into_iter().chain(once(group)).chain(rest).collect();
         for name in &self.parameters {
             row.extend(cells_of_estimate(impact.parameters.get(name)));

@@ -83,13 +83,16 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
 
 /// How many impacts count, of how many, and what becomes of the others.
 pub fn counted_line(outcome: &CampaignOutcome) -> String {
-    let failed_law = || outcome.failed.iter().find_map(|own| own.law.as_ref());
-    let first = outcome.impacts.first().map(|impact| &impact.law);
+    let failed_law = || outcome.failed.iter().find_map(|own| own.law.as_deref());
+    let first = outcome.impacts.first().map(|impact| impact.law.as_str());
     let first = first.or_else(failed_law);
-    let fitted = outcome.impacts.iter().filter(|i| Some(&i.law) == first);
+    let fitted = outcome
+        .impacts
+        .iter()
+        .filter(|i| Some(i.law.as_str()) == first);
     let fitted: Vec<&ImpactOutcome> = fitted.collect();
     let failed = outcome.failed.iter().filter(|own| match &own.law {
-        Some(law) => Some(law) == first,
+        Some(law) => Some(law.as_str()) == first,
         None => true,
     });
     let failed = failed.count();

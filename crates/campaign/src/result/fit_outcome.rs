@@ -46,11 +46,11 @@ pub fn impact_outcome(
         specimen: entry.specimen.clone(),
         group: None,
         file: entry.file.clone(),
-        law: fit.law.kind().name().to_owned(),
+        law: fit.law.kind().name().into(),
         quantities: fit
             .quantities
             .iter()
-            .map(|q| q.quantity.name().to_owned())
+            .map(|q| q.quantity.name().into())
             .collect(),
         parameters: parameters(fit, problem),
         nuisances: named(&fit.nuisances),

@@ -1,6 +1,7 @@
 //! How intervals came about, as results are saved and shown.
 
 use serde::{Deserialize, Serialize};
+use windfall_files::name::Name;
 use windfall_files::named::Named;
 use windfall_identify::fit::interval::{IntervalDetail, ProfileCurve};
 use windfall_identify::fit::result::Fit;
@@ -12,7 +13,8 @@ const KEPT: usize = 500;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema, Deserialize)]
 pub struct IntervalOutcome {
     /// "asymptotic", "profile", "bootstrap" or "posterior".
-    pub method: String,
+    #[schema(value_type = String)]
+    pub method: Name,
     /// Resampled recordings of a bootstrap.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
@@ -86,7 +88,7 @@ pub fn interval_outcome(fit: &Fit) -> IntervalOutcome {
             .map(|e| e.name.clone())
     };
     let method = |name: &str| IntervalOutcome {
-        method: name.to_owned(),
+        method: name.into(),
         ..IntervalOutcome::default()
     };
     match &fit.intervals {

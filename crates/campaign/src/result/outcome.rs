@@ -48,9 +48,11 @@ pub struct ImpactOutcome {
     /// The recording, as impacts.csv names it.
     pub file: String,
     /// Name of the law.
-    pub law: String,
+    #[schema(value_type = String)]
+    pub law: Name,
     /// Quantities in the cost function.
-    pub quantities: Vec<String>,
+    #[schema(value_type = Vec<String>)]
+    pub quantities: Vec<Name>,
     /// Parameters of the law, in its order.
     pub parameters: Named<EstimateOutcome>,
     /// Initial velocity, onset and offset, as far as they were estimated.
