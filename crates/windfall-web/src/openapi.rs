@@ -55,6 +55,7 @@ use utoipa::{Modify, OpenApi};
         crate::api::scenes::frames,
         crate::api::scenes::hardest,
         crate::api::scenes::history,
+        crate::api::scenes::totals,
     ),
     components(schemas(Problem, CampaignChanged)),
     modifiers(&NamedValues, &KeysOfAnswers, &Token)

@@ -218,6 +218,7 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
         .route("/api/scenes/{id}/frames", get(scenes::frames))
         .route("/api/scenes/{id}/hardest", get(scenes::hardest))
         .route("/api/scenes/{id}/history", get(scenes::history))
+        .route("/api/scenes/{id}/totals", get(scenes::totals))
         .route("/api/jobs", get(jobs::jobs))
         .route("/api/jobs/{job}", get(jobs::job).delete(jobs::cancel))
         .route("/api/jobs/{job}/events", get(events::job_events))

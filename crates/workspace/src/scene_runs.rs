@@ -11,7 +11,7 @@ use windfall_files::confined::{check_inside, path_inside, read_inside};
 use windfall_files::error::Error;
 use windfall_scene_run::file_error::SceneFileError;
 use windfall_scene_run::frames::read::{SceneFrames, frames_file};
-use windfall_scene_run::frames::view::largest_force;
+use windfall_scene_run::frames::view::largest_values;
 use windfall_scene_run::run::frame_format::FramesAbout;
 
 /// Ending of directories with results of scenes.
@@ -64,6 +64,8 @@ pub struct SceneView {
     pub counts: Vec<u32>,
     /// Force of the last colour; N.
     pub most: f64,
+    /// Speed of the last colour, where fruit are coloured by their speed; m/s.
+    pub fastest: f64,
     /// Colours from no force to the largest.
     pub colours: Vec<String>,
     /// What the scene came to; nothing while it runs.
@@ -175,7 +177,7 @@ fn result_of(path: &Path) -> Option<Value> {
 /// There are no frames, or they cannot be read.
 pub fn scene_view(directory: &Path, id: String) -> Result<SceneView, Error> {
     let mut frames = SceneFrames::open(&frames_of(directory)?)?;
-    let most = largest_force(&mut frames)?;
+    let largest = largest_values(&mut frames)?;
     let step = |k: usize| css(colour_of(k as f64 / (COLOURS - 1) as f64));
     let walls = frames.walls.iter();
     let vertices = walls.map(|wall| wall.vertices.as_flattened().to_vec());
@@ -185,7 +187,8 @@ pub fn scene_view(directory: &Path, id: String) -> Result<SceneView, Error> {
         faces: frames.walls.iter().map(|wall| wall.faces.clone()).collect(),
         times: frames.frames.iter().map(|own| own.time).collect(),
         counts: frames.frames.iter().map(|own| own.fruit).collect(),
-        most,
+        most: largest.force,
+        fastest: largest.speed,
         colours: (0..COLOURS).map(step).collect(),
         outcome: result_of(directory),
         radii: std::mem::take(&mut frames.radii),

@@ -69,6 +69,16 @@ pub struct HardestFruit {
     pub absorbed_energy: f64,
 }
 
+/// What the contacts of each fruit came to over the whole run, by number from 1.
+#[derive(Clone, Debug, PartialEq, Serialize, utoipa::ToSchema)]
+pub struct FruitTotals {
+    /// Energy that all contacts of a fruit absorbed; J.
+    pub absorbed_energy: Vec<f64>,
+    /// Volume of the largest bruise of a fruit, 0 where it has none; m³. Nothing where the scene
+    /// has no law of bruises.
+    pub largest_bruise: Option<Vec<f64>>,
+}
+
 /// A row of events.csv.
 #[derive(Deserialize)]
 struct EventRow {
@@ -133,6 +143,9 @@ struct FruitRow {
     impact_speed_of_it_m_s: Option<f64>,
     #[serde(rename = "absorbed_energy_J")]
     absorbed_energy: f64,
+    bruises: Option<u64>,
+    #[serde(rename = "largest_bruise_mm3")]
+    largest_bruise: Option<f64>,
 }
 
 /// A table that a run wrote, row by row.
@@ -268,9 +281,56 @@ pub fn hardest_fruit(directory: &Path, most: usize) -> Result<Vec<HardestFruit>,
     Ok(all)
 }
 
+/// What the contacts of each fruit came to, from fruit.csv.
+///
+/// * `count`: fruit in all
+///
+/// # Errors
+/// The table cannot be read, or names a fruit beyond `count`.
+pub fn fruit_totals(directory: &Path, count: usize) -> Result<FruitTotals, Error> {
+    let mut table = Table::open(directory.join("fruit.csv"))?;
+    let mut absorbed_energy = vec![0.0; count];
+    let mut bruises = vec![0.0; count];
+    let mut bruised = false;
+    while table.next()? {
+        let row: FruitRow = table.read()?;
+        let place = (row.fruit as usize).wrapping_sub(1);
+        let fruit = row.fruit;
+        if place >= count {
+            return Err(Error::from(SceneFileError::FruitUnknown { fruit, count }));
+        }
+        absorbed_energy[place] = row.absorbed_energy;
+        bruises[place] = 1e-9 * row.largest_bruise.unwrap_or(0.0);
+        bruised |= row.bruises.is_some();
+    }
+    Ok(FruitTotals {
+        absorbed_energy,
+        largest_bruise: bruised.then_some(bruises),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn totals_are_those_of_the_table() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = "fruit,contacts,partner_of_it,largest_peak_force_N,time_of_it_s,\
+                      impact_speed_of_it_m_s,absorbed_energy_J,bruises,largest_bruise_mm3";
+        let totals = |rows: &str, count| {
+            std::fs::write(folder.path().join("fruit.csv"), format!("{header}\n{rows}")).unwrap();
+            fruit_totals(folder.path(), count)
+        };
+        let found = totals("1,2,floor,40,0.1,1,0.03,1,250\n2,0,,,,,0,0,\n", 2).unwrap();
+        assert_eq!(found.absorbed_energy, [0.03, 0.0]);
+        assert_eq!(found.largest_bruise, Some(vec![250.0 * 1e-9, 0.0]));
+        let plain = totals("1,2,floor,40,0.1,1,0.03,,\n", 1).unwrap();
+        assert_eq!(plain.largest_bruise, None);
+        let error = totals("3,0,,,,,0,,\n", 2).unwrap_err().to_string();
+        assert!(error.contains('3'), "{error}");
+        totals("0,0,,,,,0,,\n", 2).unwrap_err();
+    }
 
     /// The column and the line are named; a wall may be called "inf".
     #[test]

@@ -12,6 +12,7 @@ use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::Progress;
 use windfall_files::write_file::{check_outputs, write_whole};
+use windfall_scene::vector::length;
 
 /// Options of a picture.
 #[derive(Clone, Debug, Default)]
@@ -120,7 +121,7 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     let frame = frames.frame(number.unwrap_or(last))?;
     let most = match request.most {
         Some(most) => most,
-        None => largest_force(&mut frames)?,
+        None => largest_values(&mut frames)?.force,
     };
     let from = request.from.unwrap_or(FROM);
     let painting = scene_painting(&frames, &frame, from, most, request.width)?;
@@ -142,21 +143,38 @@ pub fn draw_scene(path: &Path, request: &PictureRequest) -> Result<PictureOutcom
     })
 }
 
-/// Frames sampled for the largest force, besides the last.
+/// Frames sampled for the largest values, besides the last.
 const LOOKS: usize = 16;
 
-/// The largest force of a fruit in the scene; N. Forces only grow, but fruit leave: some
-/// frames between are looked at as well.
-pub fn largest_force(frames: &mut SceneFrames) -> Result<f64, Error> {
+/// Ends of scales of colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Largest {
+    /// Largest peak force of a fruit; N.
+    pub force: f64,
+    /// Largest speed of a fruit; m/s.
+    pub speed: f64,
+}
+
+/// The largest values of fruit in a sample of the frames. Forces only grow, but fruit leave:
+/// frames between are looked at as well. Between these a fruit can be faster.
+///
+/// # Errors
+/// The frames cannot be read.
+pub fn largest_values(frames: &mut SceneFrames) -> Result<Largest, Error> {
     let count = frames.frames.len();
-    let mut most: f64 = 0.0;
+    let (mut force, mut speed) = (0.0_f64, 0.0_f64);
     for number in (0..count).rev().step_by(count.div_ceil(LOOKS).max(1)) {
-        let frame = frames.frame(number)?;
-        let forces = frame.fruit.iter().map(|own| f64::from(own.peak_force));
-        most = forces.fold(most, f64::max);
+        for own in frames.frame(number)?.fruit {
+            force = force.max(own.peak_force.into());
+            speed = speed.max(length(own.velocity.map(f64::from)));
+        }
     }
-    // Where nothing has touched yet any scale will do.
-    Ok(if most > 0.0 { most } else { 1.0 })
+    // Where nothing has touched or moved yet any scale will do.
+    let end = |value: f64| if value > 0.0 { value } else { 1.0 };
+    Ok(Largest {
+        force: end(force),
+        speed: end(speed),
+    })
 }
 
 /// Writes the frames of a scene for ParaView.

@@ -219,6 +219,87 @@ test("the fruit hit hardest is chosen in the list, marked, and looked at through
   await pictures(page, "scene-whole");
 });
 
+test("fruit are coloured by force, speed and absorbed energy, each with its scale", async () => {
+  const choices = page.getByLabel("Colour by");
+  const words = await choices.locator("option").allInnerTexts();
+  assert.deepEqual(words, ["peak force", "speed", "absorbed energy"]);
+  const energies = fruit.map((row) => 1e3 * Number(row.absorbed_energy_J));
+  const seen = [];
+  for (const word of words) {
+    await choices.selectOption(word);
+    await settle();
+    seen.push(await stage().screenshot());
+    const said = await page.locator(".legend svg").getAttribute("aria-label");
+    if (word === "absorbed energy") {
+      const most = Number(/to ([\d.\u202f]+) millijoule/.exec(said)[1].replace("\u202f", ""));
+      assert.ok(Math.abs(most / Math.max(...energies) - 1) < 0.006, `${said}: ${Math.max(...energies)}`);
+    }
+  }
+  assert.notDeepEqual(seen[0], seen[1]);
+  assert.notDeepEqual(seen[1], seen[2]);
+  await accessible(page, "scene coloured by energy");
+  await fits(page, "scene coloured by energy");
+  await choices.selectOption("peak force");
+});
+
+/** The file that a button gives. */
+async function saved(name) {
+  const arriving = page.waitForEvent("download", { timeout: 60_000 });
+  await page.getByRole("button", { name }).click();
+  const file = await arriving;
+  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
+}
+
+test("what is seen is saved as a picture that is wide enough for print", async () => {
+  const { name, bytes } = await saved("Save picture (PNG)");
+  assert.equal(name, "chute-scene.png");
+  assert.equal(bytes.toString("latin1", 1, 4), "PNG");
+  assert.equal(bytes.readUInt32BE(16), 2400);
+  // The scene is drawn, not only the paper: noise of edges and shades does not compress away.
+  assert.ok(bytes.length > 60_000, `${bytes.length} bytes`);
+  if (process.env.SCREENSHOTS) await writeFile(join(process.env.SCREENSHOTS, "saved.png"), bytes);
+  // The scene on the page is as large as before.
+  const ratio = await page.evaluate(() => {
+    const canvas = document.querySelector(".stage canvas");
+    return canvas.width / canvas.clientWidth / Math.min(window.devicePixelRatio, 2);
+  });
+  assert.ok(Math.abs(ratio - 1) < 0.01, `${ratio}`);
+});
+
+test("a film plays from the time shown to the end", async () => {
+  await slider().focus();
+  await page.keyboard.press("End");
+  for (let k = 0; k < 40; k++) await page.keyboard.press("ArrowLeft");
+  await page.getByLabel("Speed").selectOption("0.5");
+  const from = await now();
+  const { name, bytes } = await saved("Save film (WebM)");
+  assert.equal(name, "chute-scene.webm");
+  assert.ok(Math.abs((await now()) - 2) < 1e-3);
+  if (process.env.SCREENSHOTS) await writeFile(join(process.env.SCREENSHOTS, "saved.webm"), bytes);
+  // The page itself may load no film.
+  const blank = await page.context().newPage();
+  const film = await blank.evaluate(async (data) => {
+    const video = document.createElement("video");
+    video.muted = true;
+    video.src = URL.createObjectURL(new Blob([new Uint8Array(data)], { type: "video/webm" }));
+    await new Promise((done, failed) => {
+      video.onloadeddata = done;
+      video.onerror = () => failed(new Error("no film"));
+    });
+    // What a recorder writes says how long it is only by being played.
+    const ended = new Promise((done) => (video.onended = done));
+    await video.play();
+    await ended;
+    const frames = video.getVideoPlaybackQuality().totalVideoFrames;
+    return { width: video.videoWidth, length: video.currentTime, frames };
+  }, [...bytes]);
+  await blank.close();
+  assert.equal(film.width, 1280);
+  const expected = (2 - from) / 0.5;
+  assert.ok(Math.abs(film.length - expected) < 0.7, `${film.length} s of ${expected}`);
+  assert.ok(film.frames >= 3, `${film.frames} pictures`);
+});
+
 test("a number that no fruit has is told, and a scene that is not there", async () => {
   await page.getByLabel("Number").fill("41");
   await page.getByRole("button", { name: "Show", exact: true }).click();

@@ -10,7 +10,7 @@ use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use windfall_scene_run::frames::history::{
-    FruitHistory, HardestFruit, fruit_history, hardest_fruit,
+    FruitHistory, FruitTotals, HardestFruit, fruit_history, fruit_totals, hardest_fruit,
 };
 use windfall_workspace::scene_runs::{
     SceneEntry, SceneView, scene_frames_from, scene_fruit_count, scene_run, scene_runs, scene_view,
@@ -91,6 +91,19 @@ pub(crate) async fn hardest(
     let most = asked.most.unwrap_or(USUAL).min(MOST);
     let fruit = app.work(move |app| hardest_fruit(&scene_run(&app.workspace, &id)?, most));
     app.tell(&fruit.await?)
+}
+
+/// What the contacts of each fruit came to over the whole run.
+#[utoipa::path(
+    get, path = "/api/scenes/{id}/totals",
+    params(("id" = String, Path, example = "scene.run")),
+    responses((status = 200, body = FruitTotals), QuestionProblems))]
+pub(crate) async fn totals(State(app): State<App>, Path(id): Path<String>) -> Answer<FruitTotals> {
+    let totals = app.work(move |app| {
+        let directory = scene_run(&app.workspace, &id)?;
+        fruit_totals(&directory, scene_fruit_count(&directory)?)
+    });
+    app.tell(&totals.await?)
 }
 
 /// The contacts of a fruit.

@@ -134,6 +134,7 @@ export const api = {
   /** Whole frames from a number on: as many as the server gives at once. */
   frames: (id: string, from: number) => call("GET /api/scenes/{id}/frames", [id], { query: { from } }),
   hardest: (id: string, most: number) => call("GET /api/scenes/{id}/hardest", [id], { query: { most } }),
+  totals: (id: string) => call("GET /api/scenes/{id}/totals", [id]),
   history: (id: string, fruit: number, signal?: AbortSignal) =>
     call("GET /api/scenes/{id}/history", [id], { query: { fruit }, signal }),
   cardAddress: (id: string, law: string) => addressOf("/api/campaigns/{id}/card", [id], { law }),

@@ -154,6 +154,7 @@ export interface FramesAbout {
 }
 export interface FruitHistory { fruit: number; contacts: number; told: ContactView[]; }
 export interface FruitOutcome { specimen: string; impacts: number; parameters: number[]; }
+export interface FruitTotals { absorbed_energy: number[]; largest_bruise: number[] | null; }
 export interface GoodnessOutcome {
   chi_squared: number | null; reduced_chi_squared: number | null; caveat: string; root_mean_square: number;
   mean_absolute: number; mean_absolute_relative: number | null;
@@ -404,7 +405,7 @@ export interface SceneStep {
 }
 export interface SceneView {
   id: string; about: FramesAbout; radii: number[]; vertices: number[][]; faces: number[][]; times: number[];
-  counts: number[]; most: number; colours: string[]; outcome: SceneOutcome | null;
+  counts: number[]; most: number; fastest: number; colours: string[]; outcome: SceneOutcome | null;
 }
 export interface SensorOutcome {
   name: string; look: number; interval: number; flow: FlowOutcome | null; space: SpaceOutcome | null;
@@ -549,4 +550,5 @@ export interface Calls {
   "GET /api/scenes/{id}/frames": Call<ArrayBuffer, undefined, { from?: number }>;
   "GET /api/scenes/{id}/hardest": Call<HardestFruit[], undefined, { most?: number }>;
   "GET /api/scenes/{id}/history": Call<FruitHistory, undefined, { fruit: number }>;
+  "GET /api/scenes/{id}/totals": Call<FruitTotals>;
 }

@@ -11,8 +11,13 @@ export async function download(address: string, name: string): Promise<void> {
     const problem = (await response.json().catch(() => null)) as Problem | null;
     throw problem ? new Failed(problem) : new Error(`the server answered ${response.status}`);
   }
+  saveAs(await response.blob(), name);
+}
+
+/** Gives a file to the user. */
+export function saveAs(blob: Blob, name: string): void {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(await response.blob());
+  link.href = URL.createObjectURL(blob);
   link.download = name;
   link.click();
   // Firefox reads the address only after the click was handled.

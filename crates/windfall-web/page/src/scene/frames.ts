@@ -11,9 +11,10 @@ const WALL = 28;
 const FRUIT = 48;
 /** Words of 32 bits of a fruit. */
 export const WORDS = FRUIT / 4;
-/** Where in them place, orientation and largest peak force begin. */
+/** Where in them place, orientation, velocity and largest peak force begin. */
 export const PLACE = 1;
 export const TURN = 4;
+export const VELOCITY = 8;
 export const PEAK = 11;
 
 /** Bytes that the server gives at once. */

@@ -1,5 +1,5 @@
-/** A scene in 3D: transparent walls, fruit as shaded balls coloured by their largest peak
- *  force. */
+/** A scene in 3D: transparent walls, fruit as balls that are shaded and cast shadows, in the
+ *  colours of a value. */
 
 import {
   BackSide,
@@ -22,6 +22,7 @@ import {
   Quaternion,
   Raycaster,
   Scene,
+  ShadowMaterial,
   SphereGeometry,
   Vector2,
   Vector3,
@@ -30,7 +31,8 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ContactView, SceneView } from "../api/types";
 import { pick } from "../plots/scale";
-import { PEAK, PLACE, TURN, WORDS, type Frame } from "./frames";
+import { PLACE, TURN, WORDS, type Frame } from "./frames";
+import type { Shade } from "./shades";
 
 /** Colours that the theme gives. */
 export interface Look {
@@ -45,8 +47,10 @@ const FROM: [number, number] = [(-62 * Math.PI) / 180, (24 * Math.PI) / 180];
 const FIELD = 28;
 /** Edges are drawn where faces meet at more than this; degrees. */
 const BEND = 25;
-/** Fruit beyond which balls have fewer faces. */
+/** Fruit beyond which balls have fewer faces and cast no shadows. */
 const MANY = 2500;
+/** Points of a side of the map of shadows. */
+const SHADOWS = 2048;
 /** Most spots that are marked on a fruit. */
 const SPOTS = 300;
 
@@ -72,6 +76,7 @@ export class Player {
   #contacts: ContactView[] = [];
   #time = 0;
   #due = false;
+  #shade: Shade | null = null;
   /** The view, until the user turns it. */
   #from = FROM;
   #turned = false;
@@ -84,22 +89,21 @@ export class Player {
     readonly view: SceneView,
   ) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.enlarge(null);
     this.#colours = view.colours.map((own) => new Color(own));
     const { low, high } = view.about.bounds;
     this.#middle = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
     this.#points = outline(view);
     this.#size = Math.max(new Vector3(...low).distanceTo(new Vector3(...high)), 1e-3);
 
-    this.#scene.add(new HemisphereLight(0xffffff, 0xc8ccd4, 2.5));
-    const sun = new DirectionalLight(0xffffff, 1.0);
-    sun.position.set(-0.4, -0.8, 1.2);
-    this.#scene.add(sun);
-
-    const capacity = Math.max(1, ...view.counts);
+    const capacity = view.counts.reduce((a, b) => Math.max(a, b), 1);
+    this.#scene.add(new HemisphereLight(0xffffff, 0xb4bac6, 2.0));
+    this.#sun(capacity <= MANY);
     const ball = marked(capacity > MANY ? 14 : 28);
     this.#fruit = new InstancedMesh(ball, new MeshLambertMaterial({ vertexColors: true }), capacity);
     this.#fruit.frustumCulled = false;
+    this.#fruit.castShadow = true;
+    this.#fruit.receiveShadow = true;
     this.#fruit.setColorAt(0, this.#colours[0]!);
     this.#fruit.count = 0;
     this.#scene.add(this.#fruit);
@@ -108,6 +112,7 @@ export class Player {
     this.#chosen = new Mesh(new SphereGeometry(1, 40, 24), new MeshBasicMaterial({ side: BackSide }));
     this.#spots = new InstancedMesh(new SphereGeometry(1, 12, 8), new MeshBasicMaterial(), SPOTS);
     this.#spots.frustumCulled = false;
+    this.#own.castShadow = true;
     for (const own of [this.#own, this.#chosen, this.#spots]) {
       own.visible = false;
       this.#scene.add(own);
@@ -123,6 +128,23 @@ export class Player {
     this.#controls.addEventListener("change", () => this.draw());
     this.#controls.addEventListener("start", () => (this.#turned = true));
     this.look(...FROM);
+  }
+
+  /** The light that gives depth. */
+  #sun(shadows: boolean): void {
+    const sun = new DirectionalLight(0xffffff, 1.5);
+    sun.position.set(-0.3, -0.6, 1.4).setLength(2 * this.#size).add(this.#middle);
+    sun.target.position.copy(this.#middle);
+    this.#scene.add(sun, sun.target);
+    this.#renderer.shadowMap.enabled = shadows;
+    this.#renderer.shadowMap.autoUpdate = false;
+    sun.castShadow = shadows;
+    sun.shadow.mapSize.set(SHADOWS, SHADOWS);
+    const half = 0.6 * this.#size;
+    Object.assign(sun.shadow.camera, { left: -half, right: half, top: half, bottom: -half });
+    Object.assign(sun.shadow.camera, { near: 0.5 * this.#size, far: 4 * this.#size });
+    sun.shadow.normalBias = 2e-3 * this.#size;
+    sun.shadow.intensity = 0.6;
   }
 
   #wall(vertices: number[], faces: number[], corners: number, endless: boolean): Group {
@@ -147,7 +169,11 @@ export class Player {
     const mesh = new Mesh(geometry, face);
     // Behind one another as they come: fruit are drawn before.
     mesh.renderOrder = 1;
-    group.add(mesh, new LineSegments(new EdgesGeometry(geometry, BEND), edge));
+    // A wall one sees through shows no shadow itself.
+    const shadow = new Mesh(geometry, new ShadowMaterial({ opacity: 0.3, side: DoubleSide, depthWrite: false }));
+    shadow.receiveShadow = true;
+    shadow.renderOrder = 2;
+    group.add(mesh, shadow, new LineSegments(new EdgesGeometry(geometry, BEND), edge));
     group.matrixAutoUpdate = false;
     this.#scene.add(group);
     return group;
@@ -171,10 +197,11 @@ export class Player {
     else this.look(...this.#from);
   }
 
-  /** Fits the whole scene into view from a side. */
+  /** Fits the whole scene and the fruit in it into view from a side. */
   look(azimuth: number, elevation: number): void {
     this.#from = [azimuth, elevation];
     this.#turned = false;
+    const points = [...this.#points, ...this.#ends()];
     const [sin, cos] = [Math.sin(elevation), Math.max(Math.cos(elevation), 1e-3)];
     const from = new Vector3(Math.cos(azimuth) * cos, Math.sin(azimuth) * cos, sin).normalize();
     const right = new Vector3(-Math.sin(azimuth), Math.cos(azimuth), 0);
@@ -186,13 +213,13 @@ export class Player {
     // As far away as needed, then centred.
     for (let round = 0; round < 10; round++) {
       away = 0;
-      for (const point of this.#points) {
+      for (const point of points) {
         SPOT.subVectors(point, target);
         const far = Math.max(Math.abs(SPOT.dot(right)) / wide, Math.abs(SPOT.dot(up)) / high);
         away = Math.max(away, far + SPOT.dot(from));
       }
       const ends = [right, up].map((axis) => {
-        const seen = this.#points.map((point) => {
+        const seen = points.map((point) => {
           SPOT.subVectors(point, target);
           return SPOT.dot(axis) / (away - SPOT.dot(from));
         });
@@ -210,6 +237,50 @@ export class Player {
     this.#controls.maxDistance = 10 * away;
     this.#controls.update();
     this.draw();
+  }
+
+  /** Where fruit end to all sides, without those that fell far from the scene. */
+  #ends(): Vector3[] {
+    const frame = this.#frame;
+    const found: Vector3[] = [];
+    for (let k = 0; frame && k < frame.count; k++) {
+      const centre = new Vector3().fromArray(frame.numbers, k * WORDS + PLACE);
+      if (centre.distanceTo(this.#middle) > 2 * this.#size) continue;
+      const radius = this.view.radii[frame.words[k * WORDS]! - 1] ?? 0;
+      for (const side of [-radius, radius]) {
+        for (const axis of [0, 1, 2]) found.push(centre.clone().setComponent(axis, centre.getComponent(axis) + side));
+      }
+    }
+    return found;
+  }
+
+  /** Directions of the axes on the canvas (down is positive), and towards the viewer. */
+  axes(): { name: string; x: number; y: number; towards: number }[] {
+    const turn = this.#camera.quaternion.clone().invert();
+    return ["x", "y", "z"].map((name, axis) => {
+      SPOT.set(0, 0, 0).setComponent(axis, 1).applyQuaternion(turn);
+      return { name, x: SPOT.x, y: -SPOT.y, towards: SPOT.z };
+    });
+  }
+
+  /** A round length (m) and how wide it is seen in the middle of the view (px), at most `most`. */
+  bar(most: number): { length: number; width: number } {
+    const away = this.#camera.position.distanceTo(this.#controls.target);
+    const pixel = (2 * Math.tan((FIELD * Math.PI) / 360) * away) / this.size()[1];
+    const power = 10 ** Math.floor(Math.log10(most * pixel));
+    const length = power * ([5, 2].find((step) => step * power <= most * pixel) ?? 1);
+    return { length, width: length / pixel };
+  }
+
+  /** Width and height of the canvas as it is seen; px. */
+  size(): [number, number] {
+    return [Math.max(this.canvas.clientWidth, 1), Math.max(this.canvas.clientHeight, 1)];
+  }
+
+  /** Colours fruit by a value. */
+  colourBy(shade: Shade): void {
+    this.#shade = shade;
+    if (this.#frame) this.show(this.#frame, null, this.#time);
   }
 
   /** Turns the view by angles (rad) and zooms by a factor. */
@@ -230,6 +301,7 @@ export class Player {
     const span = after ? after.time - before.time : 0;
     const part = after && span > 0 ? Math.min(Math.max((time - before.time) / span, 0), 1) : 0;
     const next = part > 0 ? after : null;
+    const first = this.#frame === null;
     this.#frame = before;
     this.#time = time;
     for (const [place, group] of this.#walls.entries()) {
@@ -237,7 +309,9 @@ export class Player {
       group.matrixWorldNeedsUpdate = true;
     }
     this.#balls(before, next, part);
-    this.draw();
+    this.#renderer.shadowMap.needsUpdate = true;
+    if (first && !this.#turned) this.look(...this.#from);
+    else this.draw();
   }
 
   #balls(before: Frame, next: Frame | null, part: number): void {
@@ -254,13 +328,14 @@ export class Player {
       const radius = this.view.radii[fruit - 1] ?? 0;
       MATRIX.compose(SPOT, ROTATION, SIZE.setScalar(radius));
       this.#fruit.setMatrixAt(k, MATRIX);
-      this.#fruit.setColorAt(k, this.#colour(before.numbers[at + PEAK]!));
+      const colour = this.#colour(fruit, before.numbers, at);
+      this.#fruit.setColorAt(k, colour);
       if (fruit === this.#selected) {
         found = true;
         this.#own.position.copy(SPOT);
         this.#own.quaternion.copy(ROTATION);
         this.#own.scale.setScalar(radius * 1.001);
-        this.#own.material.color.copy(this.#colour(before.numbers[at + PEAK]!));
+        this.#own.material.color.copy(colour);
         this.#chosen.position.copy(SPOT);
         this.#chosen.scale.setScalar(radius * 1.16);
       }
@@ -289,8 +364,9 @@ export class Player {
     this.#spots.instanceMatrix.needsUpdate = true;
   }
 
-  #colour(force: number): Color {
-    return pick(this.#colours, force / this.view.most);
+  #colour(fruit: number, numbers: Float32Array, at: number): Color {
+    const part = this.#shade ? this.#shade.of(fruit, numbers, at) / this.#shade.most : 0;
+    return pick(this.#colours, part);
   }
 
   /** Marks a fruit, and where it was struck; `through` makes the others transparent. */
@@ -299,6 +375,7 @@ export class Player {
     this.#contacts = [...contacts].sort((a, b) => b.peak_force - a.peak_force);
     const material = this.#fruit.material as MeshLambertMaterial;
     const clear = through && fruit !== null;
+    this.#fruit.castShadow = !clear;
     if (material.transparent !== clear) {
       material.transparent = clear;
       material.opacity = clear ? 0.16 : 1;
@@ -352,10 +429,21 @@ export class Player {
     this.#due = true;
     requestAnimationFrame(() => {
       if (!this.#due) return;
-      this.#due = false;
-      this.#renderer.render(this.#scene, this.#camera);
-      this.drawn();
+      this.render();
     });
+  }
+
+  /** Draws at once. */
+  render(): void {
+    this.#due = false;
+    this.#renderer.render(this.#scene, this.#camera);
+    this.drawn();
+  }
+
+  /** Pixels of the canvas in one of the page; as many as the screen has where it is `null`. */
+  enlarge(scale: number | null): void {
+    this.#renderer.setPixelRatio(scale ?? Math.min(window.devicePixelRatio, 2));
+    if (scale === null) this.draw();
   }
 
   dispose(): void {
@@ -372,18 +460,16 @@ const ROTATION = new Quaternion();
 const OTHER = new Quaternion();
 const RAY = new Raycaster();
 
-/** Corners of the walls, or of the whole where there are none. */
+/** Corners of the walls, and of the box in which fruit come, too. */
 function outline(view: SceneView): Vector3[] {
   const points: Vector3[] = [];
   for (const own of view.vertices) {
     for (let at = 0; at < own.length; at += 3) points.push(new Vector3().fromArray(own, at));
   }
   const { low, high } = view.about.bounds;
-  if (points.length === 0) {
-    for (let corner = 0; corner < 8; corner++) {
-      const [x, y, z] = [0, 1, 2].map((k) => (corner & (1 << k) ? high[k]! : low[k]!));
-      points.push(new Vector3(x, y, z));
-    }
+  for (let corner = 0; corner < 8; corner++) {
+    const [x, y, z] = [0, 1, 2].map((k) => (corner & (1 << k) ? high[k]! : low[k]!));
+    points.push(new Vector3(x, y, z));
   }
   return points;
 }
