@@ -147,6 +147,18 @@ pub fn html_of_report(report: &Report) -> String {
     page.into_string()
 }
 
+fn gravest_first(findings: &[FindingOutcome]) -> Vec<&FindingOutcome> {
+    let mut sorted: Vec<&FindingOutcome> = findings.iter().collect();
+    sorted.sort_by_key(|finding| finding.severity);
+    sorted
+}
+
+fn words(finding: &FindingOutcome) -> Markup {
+    html! {
+        em { (finding.severity.word()) } " " strong { (finding.code) } ": " (finding.message)
+    }
+}
+
 fn findings(report: &Report) -> Markup {
     html! {
         section id="findings" {
@@ -155,16 +167,16 @@ fn findings(report: &Report) -> Markup {
                 p { "Nothing was found that a reader would have to know." }
             } @else {
                 ul {
-                    @for finding in &report.findings {
-                        li { strong { (finding.code) } ": " (finding.message) }
+                    @for finding in gravest_first(&report.findings) {
+                        li { (words(finding)) }
                     }
                     @for failure in &report.failed {
                         li {
                             strong { "not fitted" } ": " (failure.id) ": " (failure.message)
                             @if !failure.findings.is_empty() {
                                 ul {
-                                    @for finding in &failure.findings {
-                                        li { strong { (finding.code) } ": " (finding.message) }
+                                    @for finding in gravest_first(&failure.findings) {
+                                        li { (words(finding)) }
                                     }
                                 }
                             }
@@ -244,10 +256,7 @@ mod tests {
             title: hostile.to_owned(),
             made: String::new(),
             simulated: None,
-            findings: vec![FindingOutcome {
-                code: "clipped".into(),
-                message: hostile.to_owned(),
-            }],
+            findings: vec![FindingOutcome::new("clipped", hostile)],
             failed: Vec::new(),
             sections: vec![Section {
                 tables: vec![CaptionedTable {

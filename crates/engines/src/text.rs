@@ -4,6 +4,7 @@ use crate::contacts::ContactsOutcome;
 use crate::delivered::text_of_delivered;
 use crate::run::DeckOutcome;
 use windfall_files::text::statistic::number;
+use windfall_files::text::table::finding_lines;
 use windfall_scene_run::file::engine_kind::Engine;
 use windfall_scene_run::run::tables::text_of_files;
 
@@ -19,8 +20,8 @@ pub fn text_of_deck(outcome: &DeckOutcome) -> String {
             steps => format!("{steps} steps"),
         }
     );
-    for finding in &outcome.findings {
-        text += &format!("\n{}: {}\n", finding.code, finding.message);
+    for line in finding_lines(&outcome.findings) {
+        text += &format!("\n{line}\n");
     }
     let program = match outcome.engine == Engine::Liggghts.title() {
         true => "liggghts",

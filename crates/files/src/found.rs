@@ -5,6 +5,7 @@
 
 use crate::name::Name;
 use crate::named::{Named, grouped};
+use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 use windfall_distribution::quantile::median;
 
@@ -36,12 +37,28 @@ impl EstimateOutcome {
 
 /// Something that a reader of the result must know.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema, Deserialize)]
+#[serde(from = "StoredFinding")]
 pub struct FindingOutcome {
     /// Short name for scripts.
     #[schema(value_type = String)]
     pub code: Name,
+    /// How grave it is: that of its code.
+    pub severity: Severity,
     /// A sentence.
     pub message: String,
+}
+
+/// A finding as files hold it. Its severity is that of today, whatever stands beside it.
+#[derive(Deserialize)]
+struct StoredFinding {
+    code: Name,
+    message: String,
+}
+
+impl From<StoredFinding> for FindingOutcome {
+    fn from(stored: StoredFinding) -> Self {
+        Self::new(&stored.code, stored.message)
+    }
 }
 
 impl FindingOutcome {
@@ -51,6 +68,7 @@ impl FindingOutcome {
         message.shrink_to_fit();
         Self {
             code: code.into(),
+            severity: Severity::of(code),
             message,
         }
     }
@@ -174,6 +192,19 @@ mod tests {
     fn reference_nist_numacc1() {
         let found = spread(&[10000001.0, 10000003.0, 10000002.0]).unwrap();
         assert_eq!((found.mean, found.sd, found.n), (10000002.0, Some(1.0), 3));
+    }
+
+    /// Stores of earlier versions hold no severity, and what they hold is not asked.
+    #[test]
+    fn closed_form_a_stored_finding_has_the_severity_of_its_code() {
+        for text in [
+            r#"{"code":"clipped","message":"at 5 V"}"#,
+            r#"{"code":"clipped","severity":"note","message":"at 5 V"}"#,
+        ] {
+            let found: FindingOutcome = serde_json::from_str(text).unwrap();
+            assert_eq!(found, FindingOutcome::new("clipped", "at 5 V"));
+            assert_eq!(found.severity, Severity::Wrong);
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use windfall_draw::terminal_plot::terminal_plot;
 use windfall_files::error::Error;
 use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::plain;
-use windfall_files::text::table::table_text;
+use windfall_files::text::table::{finding_lines, table_text};
 
 /// Most properties of a file that the text shows.
 const SHOWN_PROPERTIES: usize = 12;
@@ -68,8 +68,8 @@ pub fn text_of_inspection(inspection: &Inspection, columns: usize) -> String {
     if inspection.findings.is_empty() {
         text += "nothing looks wrong\n";
     }
-    for finding in &inspection.findings {
-        let _ = writeln!(text, "{}: {}", finding.code, finding.message);
+    for line in finding_lines(&inspection.findings) {
+        let _ = writeln!(text, "{line}");
     }
     text
 }

@@ -1,8 +1,11 @@
 //! What `fit` gives, whatever the campaign measures.
 
 use crate::measured::MeasuredOutcome;
+use crate::text::finding_kinds_of_measured;
 use serde::Serialize;
+use windfall_campaign::impacts::findings::finding_kinds_of;
 use windfall_campaign::result::outcome::{CampaignOutcome, StatusOutcome};
+use windfall_files::finding_kind::FindingKind;
 use windfall_files::found::FailureOutcome;
 
 /// What `fit` gives, whatever the campaign measures.
@@ -28,6 +31,14 @@ impl AnyOutcome {
             // Compiled where all of its parts are.
             Self::Impacts(own) => own.json(),
             Self::Measured(own) => serde_json::to_string_pretty(own),
+        }
+    }
+
+    /// Its findings, each kind once with the impacts that have it: what `fit` prints.
+    pub fn finding_kinds(&self) -> Vec<FindingKind> {
+        match self {
+            Self::Impacts(outcome) => finding_kinds_of(outcome),
+            Self::Measured(outcome) => finding_kinds_of_measured(outcome),
         }
     }
 

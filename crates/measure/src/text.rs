@@ -7,12 +7,12 @@ use itertools::Itertools;
 use std::fmt::Write;
 use windfall_campaign::settings::kind::CampaignKind;
 use windfall_files::error::Error;
+use windfall_files::finding_kind::{FindingKind, FoundOn, finding_kinds};
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::grouped;
 use windfall_files::table::write::{csv_text, number_cell};
 use windfall_files::text::number::{spread_percent, value_and_sd};
 use windfall_files::text::table::{
-    Cells, failures_list, findings_list, header_of, of_impacts, page_tables, title_lines,
+    Cells, failures_list, findings_list, header_of, page_tables, title_lines,
 };
 
 /// More results than this are shown as groups only.
@@ -185,27 +185,30 @@ fn findings_text(outcome: &MeasuredOutcome) -> String {
     findings + &failures_list("not evaluated", &outcome.failed, 4)
 }
 
-/// Findings of the whole, then one of each kind on items, with how many share it.
+/// [`finding_kinds_of_measured`] in words.
 pub fn findings_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingOutcome> {
-    let mut found = outcome.findings.clone();
+    let kinds = finding_kinds_of_measured(outcome);
+    kinds.iter().map(FindingKind::told).collect()
+}
+
+/// Findings of the whole, then one of each kind on items, the gravest first.
+pub fn finding_kinds_of_measured(outcome: &MeasuredOutcome) -> Vec<FindingKind> {
     let items = outcome
         .impacts
         .iter()
         .chain(&outcome.parts)
         .chain(&outcome.specimens)
         .chain(&outcome.whole);
-    let all = items.flat_map(|item| {
+    let found = items.flat_map(|item| {
         let findings = item.findings.iter();
-        findings.map(|finding| (&finding.code, (finding, item.id.as_str())))
+        findings.map(|finding| FoundOn {
+            finding,
+            id: &item.id,
+            law: "",
+        })
     });
-    for (_, kind) in grouped(all) {
-        let (finding, _) = kind[0];
-        let names: Vec<&str> = kind.iter().map(|(_, id)| *id).unique().collect();
-        // Items of the whole and of specimens stand beside those of recordings.
-        let message = of_impacts(&finding.message, &names, usize::MAX);
-        found.push(FindingOutcome::new(&finding.code, message));
-    }
-    found
+    // Items of the whole and of specimens stand beside those of recordings.
+    finding_kinds(&outcome.findings, found, &[], None)
 }
 
 /// One row per recording and law.

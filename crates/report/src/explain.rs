@@ -3,6 +3,7 @@
 use serde::Serialize;
 use windfall_files::error::Error;
 use windfall_files::option_value::unusable;
+use windfall_files::severity::Severity;
 use windfall_files::text::table::paragraph;
 use windfall_files::text::toml_source::suggestion;
 
@@ -17,6 +18,8 @@ pub struct Explanation {
     pub code: String,
     /// Section of the page: where it comes from.
     pub section: String,
+    /// How grave it is.
+    pub severity: Severity,
     /// What it means.
     pub meaning: String,
     /// What to do.
@@ -35,14 +38,16 @@ pub fn all_explanations() -> Vec<Explanation> {
             continue;
         };
         let cells: Vec<&str> = row.trim_end_matches('|').split(" | ").collect();
-        let [codes, meaning, advice] = cells[..] else {
+        let [codes, _, meaning, advice] = cells[..] else {
             continue;
         };
         // One row may explain several codes.
         for code in codes.split(", ") {
+            let code = code.trim_matches([' ', '`']);
             found.push(Explanation {
-                code: code.trim_matches([' ', '`']).to_owned(),
+                code: code.to_owned(),
                 section: section.to_owned(),
+                severity: Severity::of(code),
                 meaning: meaning.trim().to_owned(),
                 advice: advice.trim().to_owned(),
             });
@@ -84,7 +89,8 @@ pub fn text_of_explanations(explanations: &[Explanation]) -> String {
             section = &one.section;
             text += &format!("\n{section}\n");
         }
-        let words = format!("  {}: {} {}", one.code, one.meaning, one.advice);
+        let word = one.severity.word();
+        let words = format!("  [{word}] {}: {} {}", one.code, one.meaning, one.advice);
         text += &(paragraph(&words.replace('`', ""), 4) + "\n");
     }
     text.trim_start().to_owned()
@@ -121,6 +127,11 @@ mod tests {
     fn rejects_a_misspelt_code() {
         let told = explain(&["cliped".to_owned()]).unwrap_err().to_string();
         assert!(told.contains("clipped"), "{told}");
-        assert_eq!(explain(&["clipped".to_owned()]).unwrap().len(), 1);
+        let [clipped] = &explain(&["clipped".to_owned()]).unwrap()[..] else {
+            panic!("clipped has one explanation");
+        };
+        assert_eq!(clipped.severity, Severity::Wrong);
+        assert!(clipped.meaning.starts_with("Samples are"), "{clipped:?}");
+        assert!(text_of_explanations(&[clipped.clone()]).contains("[wrong] clipped: Samples"));
     }
 }

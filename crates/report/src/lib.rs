@@ -9,4 +9,5 @@ pub mod items;
 mod listed;
 pub mod methods;
 pub mod run;
+pub mod schema_of_template;
 pub mod stored_card;

@@ -5,7 +5,7 @@ use crate::motion::{MotionOutcome, MovingImpact, Samples};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::write::csv_text;
-use windfall_files::text::table::table_text;
+use windfall_files::text::table::{finding_lines, table_text};
 
 /// A value of an impact: name, value (NaN where there is none), unit.
 pub(crate) type Row = (&'static str, f64, &'static str);
@@ -64,9 +64,7 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
 
 /// A line for each finding, after an empty one; nothing without findings.
 pub fn findings_text(findings: &[FindingOutcome]) -> String {
-    let lines = findings
-        .iter()
-        .map(|finding| format!("\n{}: {}", finding.code, finding.message));
+    let lines = finding_lines(findings).map(|line| format!("\n{line}"));
     let text: String = lines.collect();
     match text.is_empty() {
         true => text,

@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 use windfall_campaign::settings::template::TEMPLATES;
 use windfall_cards::library::laws::{LawCardText, law_cards};
 use windfall_files::provenance::VERSION;
+use windfall_report::explain::{Explanation, all_explanations};
 
 /// What the page needs before it opens a campaign.
 #[derive(Debug, Serialize, ToSchema)]
@@ -58,6 +59,12 @@ pub(crate) async fn about(State(app): State<App>) -> Answer<About> {
         kinds: TEMPLATES.map(|(name, _)| name),
         laws: laws.iter().map(law_about).collect(),
     })
+}
+
+/// Every finding: what it means and what to do, as `windfall explain` says it.
+#[utoipa::path(get, path = "/api/findings", responses((status = 200, body = Vec<Explanation>)))]
+pub(crate) async fn findings(State(app): State<App>) -> Answer<Vec<Explanation>> {
+    app.tell(&all_explanations())
 }
 
 fn law_about(LawCardText { law, .. }: &LawCardText) -> LawAbout {

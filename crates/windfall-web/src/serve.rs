@@ -197,6 +197,8 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
         .route("/window", put(changes::window))
         .route("/exclusion", put(changes::exclusion))
         .route("/options", put(changes::options))
+        .route("/rig", put(changes::rig))
+        .route("/momentum", get(campaigns::momentum))
         .route("/channels", put(changes::channels))
         .route("/impacts", post(changes::impacts))
         .route("/jobs", post(jobs::start))
@@ -206,6 +208,8 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
         .route("/report/{*file}", get(files::report));
     Router::new()
         .route("/api/about", get(about::about))
+        .route("/api/rigs", get(campaigns::rigs))
+        .route("/api/findings", get(about::findings))
         .route("/api/openapi.json", get(openapi::openapi))
         .route(
             "/api/campaigns",

@@ -1,5 +1,6 @@
 //! A campaign as the page shows it, whatever it measures.
 
+use crate::rig_form::rig_to_be_given;
 use serde::Serialize;
 use std::path::Path;
 use std::time::SystemTime;
@@ -88,6 +89,8 @@ pub struct CampaignView {
     pub simulated: Option<String>,
     /// Lines of `[rig]`: key and value.
     pub rig: Vec<(String, String)>,
+    /// Why nothing is calculated until somebody says what the rig is; `None` once it was said.
+    pub rig_asked: Option<String>,
     /// Channels.
     pub channels: Vec<ChannelView>,
     /// Column of times that `[files]` names.
@@ -179,6 +182,7 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
         kind: campaign.kind.name(),
         simulated: campaign.simulated,
         rig: lines_of(&tables, "rig"),
+        rig_asked: rig_to_be_given(directory)?,
         channels: channels_of(&tables),
         time: files_key(&tables, "time"),
         rate: files_key(&tables, "rate"),

@@ -57,6 +57,8 @@ pub enum Change {
     },
     /// Keys of `[fit]`, and the column to group by.
     Options(OptionsChange),
+    /// Keys of `[rig]` by their text; a key of no text is removed.
+    Rig(BTreeMap<String, String>),
     /// Where the channels are in the files.
     Channels(ChannelsChange),
     /// Further impacts; their specimens are added where specimens.csv lacks them.
@@ -170,6 +172,11 @@ fn changed_files(directory: &Path, change: &Change) -> Result<Vec<(&'static str,
             change_options(&mut document, options)?;
             Ok(vec![(CAMPAIGN_FILE, document.to_string())])
         }
+        Change::Rig(keys) => {
+            let mut document = document(directory)?;
+            change_rig(&mut document, keys)?;
+            Ok(vec![(CAMPAIGN_FILE, document.to_string())])
+        }
         Change::Channels(channels) => {
             let mut document = document(directory)?;
             change_channels(&mut document, channels)?;
@@ -242,6 +249,28 @@ fn change_options(document: &mut DocumentMut, options: &OptionsChange) -> Result
             table(document, "summary")?.remove("group");
         }
         Some(group) => set(table(document, "summary")?, "group", value(group)),
+    }
+    Ok(())
+}
+
+/// Sets keys of the rig. What stood behind a value was said of the example that it replaces.
+fn change_rig(document: &mut DocumentMut, keys: &BTreeMap<String, String>) -> Result<(), Error> {
+    let rig = table(document, "rig")?;
+    for (key, text) in keys {
+        let text = text.trim();
+        if text.is_empty() {
+            rig.remove(key);
+            continue;
+        }
+        // A number alone is one, also where the key takes no text.
+        let new = match text.parse::<i64>() {
+            Ok(whole) => value(whole),
+            Err(_) => match text.parse::<f64>() {
+                Ok(number) if number.is_finite() => value(number),
+                _ => value(text),
+            },
+        };
+        rig.insert(key, new);
     }
     Ok(())
 }
@@ -492,6 +521,37 @@ mod tests {
         let (unit, text) = change("N");
         assert_eq!(unit, "N");
         assert!(!text.contains("\nsensitivity = "), "{text}");
+    }
+
+    #[test]
+    fn a_rig_that_is_given_is_no_longer_that_of_the_template() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let given = |pairs: &[(&str, &str)]| {
+            let pairs = pairs.iter();
+            Change::Rig(
+                pairs
+                    .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+                    .collect(),
+            )
+        };
+        assert!(view_campaign(&directory).unwrap().rig_asked.is_some());
+        // The value of the template itself, by somebody who says it.
+        let change = given(&[("mass", "0.5 kg"), ("mass_sd", "")]);
+        let view = change_campaign(&directory, "*", &change).unwrap();
+        assert_eq!(view.rig_asked, None);
+        assert!(view.text.contains("\nmass = \"0.5 kg\"\n"), "{}", view.text);
+        assert!(!view.text.contains("\nmass_sd"), "{}", view.text);
+        let change = given(&[("mass", "from impulse"), ("driving_acceleration", "1 g0")]);
+        let view = change_campaign(&directory, "*", &change).unwrap();
+        assert!(
+            view.text.contains("mass = \"from impulse\""),
+            "{}",
+            view.text
+        );
+        let wrong = change_campaign(&directory, "*", &given(&[("mass", "3 mm")]));
+        assert!(wrong.unwrap_err().to_string().contains("length"));
     }
 
     #[test]

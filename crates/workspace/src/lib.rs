@@ -8,5 +8,6 @@ pub mod live_fit;
 pub mod measured_view;
 pub mod recording_outline;
 pub mod results_table;
+pub mod rig_form;
 pub mod scene_runs;
 pub mod workspace;

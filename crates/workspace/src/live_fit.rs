@@ -2,12 +2,13 @@
 //! read once, and nothing is kept.
 
 use crate::equal_command::command_of_fit;
+use crate::rig_form::check_rig_given;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use windfall_campaign::impacts::bench::find_rig;
 use windfall_campaign::impacts::figure_impact::{FittedImpact, line_of_law, motion_at, shown_rate};
-use windfall_campaign::impacts::fit::fit_law;
+use windfall_campaign::impacts::fit::{fit_law, law_problem};
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_entry;
@@ -20,7 +21,10 @@ use windfall_files::found::FindingOutcome;
 use windfall_files::known_names::known_names;
 use windfall_files::named::Named;
 use windfall_files::text::quote::path_word;
-use windfall_identify::fit::interval::IntervalMethod;
+use windfall_identify::compare::ranking::aicc_of_laws;
+use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
+use windfall_identify::fit::problem::{FitOptions, LawProblem};
+use windfall_identify::rig::kind::Rig;
 use windfall_identify::rig::simulate::Trajectory;
 use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Series};
@@ -89,6 +93,9 @@ pub struct LiveLaw {
     pub outcome: Option<ImpactOutcome>,
     /// Why there is none.
     pub problem: Option<String>,
+    /// Akaike's criterion less that of the best law, under one noise for all, where several
+    /// laws are fitted and residuals are asked for.
+    pub aicc: Option<f64>,
     /// Its motion.
     pub motion: Option<ShownMotion>,
     /// Measured less fitted, of each quantity of the cost; SI.
@@ -130,6 +137,7 @@ impl LiveCampaign {
     /// # Errors
     /// The campaign is wrong, or nothing shows the mass of its rig.
     pub fn open(directory: &Path) -> Result<Self, Error> {
+        check_rig_given(directory)?;
         let mut campaign = read_campaign(directory)?;
         let rig = find_rig(&mut campaign)?;
         Ok(Self { campaign, rig })
@@ -207,7 +215,13 @@ impl LiveImpact {
             let fitted = fit_law(own, &entry, (&impact, &findings), law);
             self.live_law(&campaign, &impact, law.kind.name(), fitted, request.series)
         });
-        let laws = laws.collect();
+        let mut laws: Vec<LiveLaw> = laws.collect();
+        if request.series && laws.len() > 1 {
+            let criteria = criteria(&campaign, &self.rig.rig, &impact);
+            for (law, aicc) in laws.iter_mut().zip(criteria) {
+                law.aicc = aicc.filter(|_| law.outcome.is_some());
+            }
+        }
         let told = |finding: &Finding| FindingOutcome::new(finding.code(), finding.to_string());
         let (start, stop) = ends(&self.recording);
         Ok(LiveOutcome {
@@ -241,6 +255,7 @@ impl LiveImpact {
             law: law.to_owned(),
             outcome: None,
             problem: None,
+            aicc: None,
             motion: None,
             residuals: Named::default(),
         };
@@ -264,6 +279,19 @@ impl LiveImpact {
         shown.outcome = Some(outcome);
         shown
     }
+}
+
+/// Akaike's criterion of each law, as `windfall laws` compares them: without priors.
+fn criteria(campaign: &ImpactCampaign, rig: &Rig, impact: &Impact) -> Vec<Option<f64>> {
+    let mut campaign = campaign.clone();
+    campaign.fit.without_priors();
+    let laws = campaign.fit.laws.iter();
+    let problems: Vec<LawProblem> = laws.map(|law| law_problem(law, &campaign.fit)).collect();
+    let options = FitOptions {
+        intervals: IntervalOptions::default(),
+        ..campaign.fit.options
+    };
+    aicc_of_laws(impact, rig, &problems, &options)
 }
 
 fn equal_command(

@@ -14,6 +14,7 @@ use windfall_campaign::settings::model::FilePlan;
 use windfall_campaign::store::runs::{RunIdentity, latest_run};
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
+use windfall_files::finding_kind::FindingKind;
 use windfall_files::found::FailureOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::progress::quiet;
@@ -62,6 +63,8 @@ pub struct RunView {
 pub struct StoredResults {
     /// As `fit` gives it; `None` where nothing is stored.
     pub outcome: Option<AnyOutcome>,
+    /// Its findings, each kind once with the impacts that have it: the list that `fit` prints.
+    pub findings: Vec<FindingKind>,
     /// Impacts without a result: never fitted, or changed since.
     pub pending: usize,
     /// When the newest run was; UTC.
@@ -220,6 +223,7 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
         let view = view_campaign(directory)?;
         return Ok(StoredResults {
             outcome: None,
+            findings: Vec::new(),
             pending: view.impacts.rows.len(),
             time: None,
         });
@@ -236,6 +240,7 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
     let pending = with_reasons(failed, run.failures);
     Ok(StoredResults {
         // Where everything failed, its reasons are a result.
+        findings: outcome.finding_kinds(),
         outcome: (outcome.results() + outcome.failed().len() > 0).then_some(outcome),
         pending,
         time: Some(run.time),

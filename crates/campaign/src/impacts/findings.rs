@@ -2,9 +2,9 @@
 
 use crate::result::outcome::CampaignOutcome;
 use itertools::Itertools;
+use windfall_files::finding_kind::{FindingKind, FoundOn, finding_kinds};
 use windfall_files::found::FindingOutcome;
-use windfall_files::named::grouped;
-use windfall_files::text::table::{failures_list, findings_list, of_impacts};
+use windfall_files::text::table::{failures_list, findings_list};
 
 /// What a reader of the results must know, and what was left out.
 pub fn findings_text(outcome: &CampaignOutcome) -> String {
@@ -12,27 +12,25 @@ pub fn findings_text(outcome: &CampaignOutcome) -> String {
     findings + &failures_list("not fitted", &outcome.failed, 4)
 }
 
-/// Findings of the whole, then one of each kind on impacts, with how many share it.
+/// [`finding_kinds_of`] in words.
 pub fn findings_once(outcome: &CampaignOutcome) -> Vec<FindingOutcome> {
-    let mut findings = outcome.findings.clone();
-    findings.extend(kinds(outcome).into_iter().map(|(finding, impacts)| {
-        FindingOutcome::new(
-            &finding.code,
-            of_impacts(&finding.message, &impacts, outcome.impacts.len()),
-        )
-    }));
-    findings
+    let kinds = finding_kinds_of(outcome);
+    kinds.iter().map(FindingKind::told).collect()
 }
 
-/// The first finding of each kind, and the impacts that have one.
-fn kinds(outcome: &CampaignOutcome) -> Vec<(&FindingOutcome, Vec<&str>)> {
-    let found = outcome.impacts.iter().flat_map(|impact| {
+/// Findings of the whole, then one of each kind on impacts, the gravest first.
+pub fn finding_kinds_of(outcome: &CampaignOutcome) -> Vec<FindingKind> {
+    let fits = outcome.impacts.iter();
+    let found = fits.clone().flat_map(|impact| {
         let all = impact.findings.iter().chain(&impact.left_out);
         let own = all.unique_by(|finding| &finding.code);
-        own.map(|finding| (&finding.code, (finding, impact.id.as_str())))
+        own.map(|finding| FoundOn {
+            finding,
+            id: &impact.id,
+            law: &impact.law,
+        })
     });
-    let kinds = grouped(found).into_iter();
-    kinds
-        .map(|(_, all)| (all[0].0, all.iter().map(|(_, id)| *id).collect()))
-        .collect()
+    let laws: Vec<&str> = fits.clone().map(|own| own.law.as_str()).unique().collect();
+    let impacts = fits.map(|impact| impact.id.as_str()).unique().count();
+    finding_kinds(&outcome.findings, found, &laws, Some(impacts))
 }

@@ -56,6 +56,29 @@ pub(crate) fn rig_of(campaign: &ImpactCampaign) -> Result<RigFound, Error> {
     }
 }
 
+/// The mass that impulse and momentum of the impacts say that a contact feels, whatever
+/// campaign.toml says of it; `None` where no impact shows it. Of a pendulum it is inertia over
+/// arm squared; its weight takes part by less than what the impulse is known to.
+pub fn mass_by_impulse(campaign: &ImpactCampaign) -> Option<MassOutcome> {
+    let driving = match campaign.rig {
+        RigPlan::Pendulum(_) => Uncertain::new(0.0, 0.0),
+        RigPlan::Carriage {
+            driving_acceleration,
+            driving_acceleration_sd,
+            ..
+        } => Uncertain::new(driving_acceleration, driving_acceleration_sd),
+    };
+    let entries = campaign.shared.entries.par_iter();
+    let found = entries.filter_map(|entry| measured(campaign, entry, driving).ok());
+    let found: Vec<Measured> = found.collect();
+    let mass = mass_from_impulses(&found, driving)?;
+    Some(MassOutcome {
+        value: mass.value,
+        sd: mass.sd,
+        impacts: found.len(),
+    })
+}
+
 fn known(rig: Rig, sd: f64) -> RigFound {
     let mass = MassOutcome {
         value: rig.effective_mass(),

@@ -11,7 +11,7 @@ use windfall_files::name::Name;
 use windfall_formats::open::OpenOptions;
 use windfall_identify::fit::problem::{FitOptions, Known};
 use windfall_identify::rig::bench::{BenchQuantity, BenchSd};
-use windfall_identify::rig::kind::Pendulum;
+use windfall_identify::rig::kind::{Pendulum, Rig};
 use windfall_signal::ExtractOptions;
 use windfall_signal::recording::Quantity;
 
@@ -111,6 +111,20 @@ pub enum RigPlan {
         /// Standard uncertainty of the acceleration; m/s².
         driving_acceleration_sd: f64,
     },
+}
+
+impl RigPlan {
+    /// Mass that the contact feels, where campaign.toml says it; kg.
+    pub fn given_mass(&self) -> Option<f64> {
+        match self {
+            Self::Pendulum(pendulum) => Some(Rig::Pendulum(*pendulum).effective_mass()),
+            Self::Carriage {
+                mass: MassPlan::Given { value, .. },
+                ..
+            } => Some(*value),
+            Self::Carriage { .. } => None,
+        }
+    }
 }
 
 /// Where the mass of a carriage comes from.

@@ -60,6 +60,17 @@ impl FileSchema {
         self
     }
 
+    /// What a key of a table of the file means; `None` where there is no such key.
+    pub fn described(&self, table: &str, key: &str) -> Option<&str> {
+        let root = self.schema.as_value();
+        // A table that may be left out is one of several.
+        let own = root.pointer(&format!("/properties/{table}"))?;
+        let any = ["anyOf", "allOf"].iter().find_map(|of| own.get(of)?.get(0));
+        let place = any.unwrap_or(own).get("$ref")?.as_str()?;
+        let meaning = format!("{}/properties/{key}/description", place.strip_prefix('#')?);
+        root.pointer(&meaning)?.as_str()
+    }
+
     /// Keys that [`Self::words`] was given and the file does not have; a schema without a
     /// mistake has none.
     pub fn missing(&self) -> &[String] {

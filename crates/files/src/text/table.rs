@@ -4,6 +4,7 @@ use crate::found::{FailureOutcome, FindingOutcome};
 use crate::known_names::few_names;
 use crate::named::grouped;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use itertools::Itertools;
 
 /// Widest line of a table or a paragraph; characters.
 pub const PAGE: usize = 100;
@@ -105,21 +106,25 @@ pub fn title_lines(campaign: &str, simulated: Option<&str>) -> String {
 /// The message of the first of several impacts that say the same, with how many do and who
 /// they are.
 ///
-/// * `all`: impacts that there are
-pub fn of_impacts(message: &str, ids: &[&str], all: usize) -> String {
-    match ids {
-        [] => message.to_owned(),
-        [only] => format!("{only}: {message}"),
-        [first, ..] if ids.len() == all => {
-            format!("{first}: {message} (all have one of this kind)")
+/// * `all`: impacts that there are, where they are all of one sort
+pub fn of_impacts(message: &str, ids: &[&str], all: Option<usize>) -> String {
+    let (Some(first), others) = (ids.first(), ids.get(1..).unwrap_or_default()) else {
+        return message.to_owned();
+    };
+    let so = match others {
+        [] => return format!("{first}: {message}"),
+        _ if all == Some(ids.len()) => {
+            return format!(
+                "{first}: {message} (all {} have one of this kind)",
+                ids.len()
+            );
         }
-        [first, second] => format!("{first}: {message} (so has {second})"),
-        [first, second, third] => format!("{first}: {message} (so have {second} and {third})"),
-        [first, second, third, others @ ..] => {
-            let more = others.len();
-            format!("{first}: {message} (so have {second}, {third} and {more} more)")
-        }
-    }
+        [second] => format!("so has {second}"),
+        [second, third] => format!("so have {second} and {third}"),
+        [second, third, more @ ..] => format!("so have {second}, {third} and {} more", more.len()),
+    };
+    let count = all.map_or_else(String::new, |all| format!("; {} of {all}", ids.len()));
+    format!("{first}: {message} ({so}{count})")
 }
 
 /// A line for each cause why recordings have no result, with how many share it, and what was
@@ -136,9 +141,8 @@ pub fn failures_list(what: &str, failures: &[FailureOutcome], indent: usize) -> 
         let line = format!("{what}: {many}{}: {}", few_names(&ids), all[0].message);
         text += &(paragraph(&line, indent) + "\n");
         // Those of the first stand for all.
-        for finding in &all[0].findings {
-            let line = format!("    {}: {}", finding.code, finding.message);
-            text += &(paragraph(&line, indent + 4) + "\n");
+        for line in finding_lines(&all[0].findings) {
+            text += &(paragraph(&format!("    {line}"), indent + 4) + "\n");
         }
     }
     text
@@ -159,11 +163,17 @@ pub fn findings_list(findings: &[FindingOutcome]) -> String {
     if findings.is_empty() {
         return String::new();
     }
-    let lines = findings.iter().map(|finding| {
-        let line = format!("  {}: {}", finding.code, finding.message);
-        paragraph(&line, 4) + "\n"
-    });
+    let lines = finding_lines(findings).map(|line| paragraph(&format!("  {line}"), 4) + "\n");
     format!("\nFindings:\n{}", lines.collect::<String>())
+}
+
+/// A line for each finding, the gravest first: "[wrong] clipped: …".
+pub fn finding_lines(findings: &[FindingOutcome]) -> impl Iterator<Item = String> {
+    let sorted = findings.iter().sorted_by_key(|finding| finding.severity);
+    sorted.map(|finding| {
+        let (code, word) = (&finding.code, finding.severity.word());
+        format!("[{word}] {code}: {}", finding.message)
+    })
 }
 
 #[cfg(test)]
@@ -207,17 +217,19 @@ mod tests {
             "not fitted: 4 recordings, a1, a3, b and 1 more: raw/a1.csv: the largest value is 0.31 N\n\
              not fitted: a2: raw/a2.csv: no column \"force\"\n"
         );
-        let said = |ids: &[&str]| of_impacts("odd", ids, 9);
+        let said = |ids: &[&str]| of_impacts("odd", ids, Some(9));
+        assert_eq!(said(&[]), "odd");
         assert_eq!(said(&["a"]), "a: odd");
-        assert_eq!(said(&["a", "b", "c"]), "a: odd (so have b and c)");
+        assert_eq!(said(&["a", "b", "c"]), "a: odd (so have b and c; 3 of 9)");
         assert_eq!(
             said(&["a", "b", "c", "d", "e"]),
-            "a: odd (so have b, c and 2 more)"
+            "a: odd (so have b, c and 2 more; 5 of 9)"
         );
         assert_eq!(
-            of_impacts("odd", &["a", "b"], 2),
-            "a: odd (all have one of this kind)"
+            of_impacts("odd", &["a", "b"], Some(2)),
+            "a: odd (all 2 have one of this kind)"
         );
+        assert_eq!(of_impacts("odd", &["a", "b"], None), "a: odd (so has b)");
     }
 
     #[test]

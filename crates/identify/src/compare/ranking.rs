@@ -266,6 +266,23 @@ pub fn fits_of_impact(
     fits.into_iter().map(usable).collect()
 }
 
+/// Akaike's criterion, with its correction for small samples, of each law on one impact under one
+/// noise, less that of the best law; `None` for a law that cannot be fitted.
+pub fn aicc_of_laws(
+    impact: &Impact,
+    rig: &Rig,
+    problems: &[LawProblem],
+    options: &FitOptions,
+) -> Vec<Option<f64>> {
+    let fits = fits_of_impact(impact, rig, problems, options);
+    let all: Vec<Option<f64>> = fits
+        .iter()
+        .map(|fit| fit.as_ref().map(corrected_akaike))
+        .collect();
+    let least = all.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    all.into_iter().map(|own| Some(own? - least)).collect()
+}
+
 /// 95 % interval of the sum of differences over impacts like these, taken as
 /// independent: n (mean ± t s/√n).
 fn interval(own: &[f64], best: &[f64]) -> Option<(f64, f64)> {

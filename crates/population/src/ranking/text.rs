@@ -5,7 +5,7 @@ use std::fmt::Write;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::number::plain;
-use windfall_files::text::table::{page_tables, paragraph, title_lines};
+use windfall_files::text::table::{finding_lines, page_tables, paragraph, title_lines};
 
 /// Columns of the CSV.
 const HEADER: &str = "law,delta_aicc,delta_bic,first_share,specimens_first,prediction_error,\
@@ -70,8 +70,7 @@ pub fn text_of_laws(outcome: &LawsOutcome) -> String {
         let line = format!("not used: {}: {}", failure.id, failure.message);
         let _ = writeln!(text, "{}", paragraph(&line, 2));
     }
-    for finding in &outcome.findings {
-        let line = format!("{}: {}", finding.code, finding.message);
+    for line in finding_lines(&outcome.findings) {
         let _ = writeln!(text, "{}", paragraph(&line, 2));
     }
     text

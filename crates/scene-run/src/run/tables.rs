@@ -15,7 +15,7 @@ use windfall_files::error::Error;
 use windfall_files::table::write::{csv_cell, csv_header, csv_text};
 use windfall_files::text::columns::{Column, cells_of_rows, csv_of_rows, text_of_rows};
 use windfall_files::text::statistic::number;
-use windfall_files::text::table::{Cells, page_tables};
+use windfall_files::text::table::{Cells, finding_lines, page_tables};
 use windfall_scene::bruise::damage::Bruise;
 use windfall_scene::event::{Event, Partner};
 use windfall_scene::motion::simulation::FruitState;
@@ -293,8 +293,8 @@ pub fn text_of_scene(outcome: &SceneOutcome) -> String {
         text += &text_of_bruises(bruise);
     }
     text += &text_of_sensors(&outcome.sensors);
-    for finding in &outcome.findings {
-        text += &format!("\n{}: {}\n", finding.code, finding.message);
+    for line in finding_lines(&outcome.findings) {
+        text += &format!("\n{line}\n");
     }
     text + "\n" + &text_of_files(&outcome.files)
 }

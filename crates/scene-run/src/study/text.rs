@@ -12,7 +12,7 @@ use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::columns::{Column, cells_of_rows};
 use windfall_files::text::statistic::number;
-use windfall_files::text::table::{Cells, page_tables};
+use windfall_files::text::table::{Cells, finding_lines, page_tables};
 use windfall_files::write_file::write_whole;
 
 /// What the intervals have in them.
@@ -92,8 +92,8 @@ pub fn text_of_study(outcome: &StudyOutcome) -> String {
     if !outcome.effects.is_empty() {
         text += &format!("\n{}\n", table(&effects(outcome), &[0, 1, 2]));
     }
-    for finding in &outcome.findings {
-        text += &format!("\n{}: {}\n", finding.code, finding.message);
+    for line in finding_lines(&outcome.findings) {
+        text += &format!("\n{line}\n");
     }
     text + &text_of_files(&outcome.files)
 }

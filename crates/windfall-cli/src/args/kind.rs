@@ -1,6 +1,7 @@
 //! Kinds of templates.
 
 use clap::ValueEnum;
+use windfall_campaign::settings::template::TemplateKind;
 
 /// Rigs that have a template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -23,4 +24,20 @@ pub enum NewKind {
     Scene,
     /// Variants of a scene, compared: pads and drop heights
     SceneStudy,
+}
+
+impl NewKind {
+    /// The template of a campaign; `None` of a scene.
+    pub fn template(self) -> Option<TemplateKind> {
+        match self {
+            Self::Pendulum => Some(TemplateKind::Pendulum),
+            Self::Carriage => Some(TemplateKind::Carriage),
+            Self::Compression => Some(TemplateKind::Compression),
+            Self::Relaxation => Some(TemplateKind::Relaxation),
+            Self::Acoustic => Some(TemplateKind::Acoustic),
+            Self::Repeats => Some(TemplateKind::Repeats),
+            Self::Drop => Some(TemplateKind::Drop),
+            Self::Scene | Self::SceneStudy => None,
+        }
+    }
 }

@@ -17,8 +17,10 @@ pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
 
 fn csv(found: &Explanations) -> Result<String, Error> {
     let rows = found.findings.iter().map(|one| {
+        let word = one.severity.word();
         let cells = [&one.code, &one.section, &one.meaning, &one.advice];
-        cells.map(Clone::clone).to_vec()
+        let cells = cells.map(String::as_str).into_iter().chain([word]);
+        cells.map(str::to_owned).collect()
     });
-    csv_text(&["code", "section", "meaning", "advice"], rows)
+    csv_text(&["code", "section", "meaning", "advice", "severity"], rows)
 }

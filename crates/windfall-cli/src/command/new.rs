@@ -5,7 +5,7 @@ use crate::args::kind::NewKind;
 use crate::outcome::WrittenFiles;
 use crate::show::{csv_of_names, show};
 use windfall_campaign::settings::template::{
-    TemplateKind, write_scene_template, write_study_template, write_template,
+    write_scene_template, write_study_template, write_template,
 };
 use windfall_files::option_value::unusable;
 use windfall_files::text::quote::{command, path_word};
@@ -16,16 +16,7 @@ use windfall_inspect::gather::text::{csv_of_gathered, text_of_gathered};
 /// Writes a template and names the files.
 pub fn run(arguments: &NewArguments) -> anyhow::Result<()> {
     let directory = &arguments.directory;
-    let kind = match arguments.kind {
-        NewKind::Pendulum => Some(TemplateKind::Pendulum),
-        NewKind::Carriage => Some(TemplateKind::Carriage),
-        NewKind::Compression => Some(TemplateKind::Compression),
-        NewKind::Relaxation => Some(TemplateKind::Relaxation),
-        NewKind::Acoustic => Some(TemplateKind::Acoustic),
-        NewKind::Repeats => Some(TemplateKind::Repeats),
-        NewKind::Drop => Some(TemplateKind::Drop),
-        NewKind::Scene | NewKind::SceneStudy => None,
-    };
+    let kind = arguments.kind.template();
     if let Some(from) = &arguments.from {
         let names = arguments.names.as_deref();
         let Some(kind) = kind else {

@@ -13,6 +13,7 @@ use utoipa::{IntoParams, ToSchema};
 use windfall_campaign::settings::template::{TEMPLATES, write_template};
 use windfall_workspace::campaign_view::{CampaignView, view_campaign};
 use windfall_workspace::measured_view::{MeasuredView, measured_view};
+use windfall_workspace::rig_form::{MomentumView, RigForm, momentum_view, rig_forms};
 use windfall_workspace::workspace::{CampaignEntry, StoredResults, stored_results};
 
 /// A campaign to create.
@@ -73,6 +74,25 @@ pub(crate) fn with_version(view: CampaignView) -> (HeaderMap, Json<CampaignView>
         headers.insert(header::ETAG, version);
     }
     (headers, Json(view))
+}
+
+/// What a form asks of the rig of each kind of campaign.
+#[utoipa::path(get, path = "/api/rigs", responses((status = 200, body = Vec<RigForm>)))]
+pub(crate) async fn rigs(State(app): State<App>) -> Answer<Vec<RigForm>> {
+    let forms = app.work(|_| rig_forms()).await?;
+    app.tell(&forms)
+}
+
+/// What impulse and momentum of the first recordings say of the mass of the rig.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/momentum", params(("id" = String, Path, example = "bench")),
+    responses((status = 200, body = MomentumView), QuestionProblems))]
+pub(crate) async fn momentum(
+    State(app): State<App>,
+    Path(id): Path<String>,
+) -> Answer<MomentumView> {
+    app.answer(id, |_, directory| momentum_view(directory))
+        .await
 }
 
 /// Stored results for the current files and options; nothing is fitted.

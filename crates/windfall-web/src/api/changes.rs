@@ -66,6 +66,14 @@ pub(crate) struct OptionsGiven {
     group: Option<String>,
 }
 
+/// Keys of `[rig]`; those left out are unchanged.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RigGiven {
+    /// Values with their units, by key; a blank one removes the key.
+    keys: BTreeMap<String, String>,
+}
+
 /// Further impacts.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -183,6 +191,20 @@ fn present<T, const N: usize>(pairs: [(&str, Option<T>); N]) -> BTreeMap<String,
     given
         .filter_map(|(key, value)| Some((key.to_owned(), value?)))
         .collect()
+}
+
+/// Says what the rig is.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/rig", request_body = RigGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = CampaignView), ChangeProblems))]
+pub(crate) async fn rig(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<RigGiven>,
+) -> Result<Response, Problem> {
+    changed(app, id, version, Change::Rig(given.keys)).await
 }
 
 /// Sets the columns of the channels.

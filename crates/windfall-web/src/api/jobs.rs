@@ -25,6 +25,7 @@ use windfall_report::stored_card::CARD_FILE;
 use windfall_workspace::campaign_view::{check_work, name_of};
 use windfall_workspace::equal_command::command_of_fit;
 use windfall_workspace::results_table::write_results_table;
+use windfall_workspace::rig_form::check_rig_given;
 
 /// A job to start.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -72,6 +73,7 @@ impl JobGiven {
     fn run(&self, directory: PathBuf, job: &Job) -> Result<JobWork, Error> {
         let progress = |done: usize, all: usize| job.progress(done, all);
         check_work(&directory)?;
+        check_rig_given(&directory)?;
         Ok(match self.work {
             Work::Fit => {
                 let outcome = fit_any(&directory, &self.fit(), &progress)?;

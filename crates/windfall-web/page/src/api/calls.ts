@@ -95,6 +95,7 @@ function addressOf(template: string, path: string[], query: object = {}): string
 
 export const api = {
   about: () => call("GET /api/about"),
+  findings: () => call("GET /api/findings"),
   campaigns: () => call("GET /api/campaigns"),
   create: (body: NewCampaign) => call("POST /api/campaigns", [], { body }),
   campaign: (id: string) => call("GET /api/campaigns/{id}", [id]),
