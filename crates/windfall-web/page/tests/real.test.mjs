@@ -131,10 +131,10 @@ test("impacts of runs side by side are added", { skip: absent }, async () => {
 
 test("they are fitted, also with another law", { skip: absent }, async () => {
   await visit(page, "#/c/pads/impact/pad-40-1");
-  const parameters = page.getByRole("region", { name: "Parameters of power-law" });
+  const parameters = page.getByRole("region", { name: "Laws side by side" });
   await parameters.getByRole("row", { name: /^n .*±/ }).waitFor();
   await page.getByRole("checkbox", { name: "kelvin-voigt", exact: true }).check();
-  await page.getByRole("region", { name: "Parameters of kelvin-voigt" }).waitFor();
+  await parameters.getByRole("columnheader", { name: "kelvin-voigt" }).waitFor();
   await inspect("real-impact");
 });
 

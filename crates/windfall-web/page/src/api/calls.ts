@@ -100,6 +100,9 @@ export const api = {
   create: (body: NewCampaign) => call("POST /api/campaigns", [], { body }),
   campaign: (id: string) => call("GET /api/campaigns/{id}", [id]),
   results: (id: string) => call("GET /api/campaigns/{id}/results", [id]),
+  rigs: () => call("GET /api/rigs"),
+  /** What impulse and momentum say of the mass. */
+  momentum: (id: string) => call("GET /api/campaigns/{id}/momentum", [id]),
   /** Tables and figures of a campaign that fits no impacts, or of one of its recordings. */
   measured: (id: string, item?: string) => call("GET /api/campaigns/{id}/measured", [id], { query: { item } }),
   recordings: (id: string) => call("GET /api/campaigns/{id}/recordings", [id]),
@@ -114,6 +117,8 @@ export const api = {
     call("PUT /api/campaigns/{id}/exclusion", [id], { body, version }),
   saveOptions: (id: string, version: string, body: OptionsGiven) =>
     call("PUT /api/campaigns/{id}/options", [id], { body, version }),
+  saveRig: (id: string, version: string, keys: Record<string, string>) =>
+    call("PUT /api/campaigns/{id}/rig", [id], { body: { keys }, version }),
   saveText: (id: string, version: string, text: string) =>
     call("PUT /api/campaigns/{id}/text", [id], { body: { text }, version }),
   saveChannels: (id: string, version: string, body: ChannelsGiven) =>

@@ -41,7 +41,7 @@ export interface CampaignOutcome {
   groups: GroupOutcome[]; joint: JointOutcome[]; findings: FindingOutcome[];
 }
 export interface CampaignView {
-  id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
+  id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][]; rig_asked: string | null;
   channels: ChannelView[]; time: string | null; rate: string | null; laws: string[]; options: FitOptionsView | null;
   group: string | null; specimens: TableView; impacts: TableView; text: string; tables: string[]; report: boolean;
   command: string;
@@ -136,7 +136,16 @@ export interface FeaturesOutcome {
   directions: DirectionOutcome[]; chi_square: number; freedom: number; p: number | null; widened: number;
   fitted: FittedFeature[]; along: AlongOutcome[]; converged: boolean; evaluations: number;
 }
-export interface FindingOutcome { code: string; message: string; }
+export interface FindingKind {
+  code: string; severity: Severity; message: string; laws: string[]; impacts: string[]; of: number | null;
+}
+export interface FindingOutcome { code: string; severity: Severity; message: string; }
+export interface Explanation { code: string; section: string; severity: Severity; meaning: string; advice: string; }
+export type Severity = "wrong" | "doubtful" | "note";
+export interface RigKey { key: string; meaning: string; units: string[]; words: string[]; typical: string; needed: boolean; }
+export interface RigForm { kind: string; keys: RigKey[]; }
+export interface RigGiven { keys: Record<string, string>; }
+export interface MomentumView { mass: MassOutcome | null; of_rig: number | null; }
 export interface FitOptionsView {
   quantities: string[]; weights: string; noise: string; intervals: string; onset: string; initial_velocity: string;
   displacement_offset: string; end: string; free: string[];
@@ -224,7 +233,7 @@ export interface LevelVarianceOutcome {
 }
 export interface LimitOutcome { limit: number; share: number; interval: number[]; }
 export interface LiveLaw {
-  law: string; outcome: ImpactOutcome | null; problem: string | null; motion: ShownMotion | null;
+  law: string; outcome: ImpactOutcome | null; problem: string | null; aicc: number | null; motion: ShownMotion | null;
   residuals: Record<string, ShownSamples>;
 }
 export interface LiveOutcome {
@@ -431,7 +440,7 @@ export interface StatusOutcome { fitted: number; stored: number; failed: number;
 export interface StepOutcome {
   term: string; action: string; f: number | null; p: number | null; criterion: number | null; r2: number;
 }
-export interface StoredResults { outcome: AnyOutcome | null; pending: number; time: string | null; }
+export interface StoredResults { outcome: AnyOutcome | null; findings: FindingKind[]; pending: number; time: string | null; }
 export interface SumOfSquares { ss: number | null; df: number | null; }
 export type SurfaceAnswer = SurfaceOutcome & { maps: ResponseMap[]; command: string; };
 export interface SurfaceGiven {
@@ -516,6 +525,10 @@ export interface Call<Answer, Body = undefined, Query = undefined> {
 /** All requests by method and address. */
 export interface Calls {
   "GET /api/about": Call<About>;
+  "GET /api/findings": Call<Explanation[]>;
+  "GET /api/rigs": Call<RigForm[]>;
+  "GET /api/campaigns/{id}/momentum": Call<MomentumView>;
+  "PUT /api/campaigns/{id}/rig": Call<CampaignView, RigGiven>;
   "GET /api/campaigns": Call<CampaignEntry[]>;
   "POST /api/campaigns": Call<CampaignView, NewCampaign>;
   "GET /api/campaigns/{id}": Call<CampaignView>;
