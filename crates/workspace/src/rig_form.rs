@@ -5,6 +5,7 @@
 
 use crate::campaign_view::check_campaign;
 use serde::Serialize;
+use std::io::Write;
 use std::path::Path;
 use windfall_campaign::impacts::mass::mass_by_impulse;
 use windfall_campaign::recording::digests::campaign_text;
@@ -144,10 +145,10 @@ fn reads_without(kind: TemplateKind, scratch: &Scratch, key: &str) -> Result<boo
         .collect();
     let directory = scratch.path().join(key);
     write_template(kind, &directory)?;
-    replace_file(
-        &directory.join(CAMPAIGN_FILE),
-        text.replace(rig, &without).as_bytes(),
-    )?;
+    let text = text.replace(rig, &without);
+    replace_file(&directory.join(CAMPAIGN_FILE), |file| {
+        file.write_all(text.as_bytes())
+    })?;
     Ok(check_campaign(&directory).is_ok())
 }
 

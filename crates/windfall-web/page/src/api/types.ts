@@ -41,10 +41,10 @@ export interface CampaignOutcome {
   groups: GroupOutcome[]; joint: JointOutcome[]; findings: FindingOutcome[];
 }
 export interface CampaignView {
-  id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][]; rig_asked: string | null;
-  channels: ChannelView[]; time: string | null; rate: string | null; laws: string[]; options: FitOptionsView | null;
-  group: string | null; specimens: TableView; impacts: TableView; text: string; tables: string[]; report: boolean;
-  command: string;
+  id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
+  rig_asked: string | null; channels: ChannelView[]; time: string | null; rate: string | null; laws: string[];
+  options: FitOptionsView | null; group: string | null; specimens: TableView; impacts: TableView; text: string;
+  tables: string[]; report: boolean; command: string;
 }
 export interface CandidateOutcome {
   height: number; mass: number; fruit: string; impacts: number; drops: number; sds: (number | null)[];
@@ -120,6 +120,9 @@ export interface EstimateOutcome {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string; held: boolean;
 }
 export interface ExclusionGiven { impact: string; excluded: boolean; note?: string; }
+export interface Explanation {
+  code: string; section: string; severity: Severity; meaning: string; advice: string;
+}
 export interface FactorOutcome {
   letter: string; name: string; centre: number; half_range: number; lowest: number; highest: number;
 }
@@ -140,12 +143,6 @@ export interface FindingKind {
   code: string; severity: Severity; message: string; laws: string[]; impacts: string[]; of: number | null;
 }
 export interface FindingOutcome { code: string; severity: Severity; message: string; }
-export interface Explanation { code: string; section: string; severity: Severity; meaning: string; advice: string; }
-export type Severity = "wrong" | "doubtful" | "note";
-export interface RigKey { key: string; meaning: string; units: string[]; words: string[]; typical: string; needed: boolean; }
-export interface RigForm { kind: string; keys: RigKey[]; }
-export interface RigGiven { keys: Record<string, string>; }
-export interface MomentumView { mass: MassOutcome | null; of_rig: number | null; }
 export interface FitOptionsView {
   quantities: string[]; weights: string; noise: string; intervals: string; onset: string; initial_velocity: string;
   displacement_offset: string; end: string; free: string[];
@@ -288,6 +285,7 @@ export interface ModelRange { column: string; low: number; high: number; }
 export interface ModelResiduals {
   tests: TestOutcome[]; box_cox: BoxCoxOutcome | null; goodness: GoodnessOutcome | null;
 }
+export interface MomentumView { mass: MassOutcome | null; of_rig: number | null; }
 export interface NewCampaign { id: string; kind: string; }
 export interface NextOutcome { interest: string; now: (number | null)[]; candidates: CandidateOutcome[]; }
 export interface OnScale { value: number | null; low: number | null; high: number | null; }
@@ -391,6 +389,11 @@ export interface ResidualOutcome {
 export interface ResponseGiven { name: string; model: string; }
 export interface ResponseMap { response: string; map: ContourMap; errors: number[]; }
 export interface RidgeOutcome { of: string; radius: number; actual: number[]; value: number; }
+export interface RigForm { kind: string; keys: RigKey[]; }
+export interface RigGiven { keys: Record<string, string>; }
+export interface RigKey {
+  key: string; meaning: string; units: string[]; words: string[]; typical: string; needed: boolean;
+}
 export interface RowCount { rows: number; left_out: number; left_out_by: GroupLoss[]; }
 export interface RowInfluence {
   observed: number; fitted: number; residual: number; leverage: number; standardised: number | null;
@@ -423,6 +426,7 @@ export interface SensorOutcome {
 export interface SettingOutcome {
   actual: number[]; coded: number[]; responses: PredictedResponse[]; desirability: number | null;
 }
+export type Severity = "wrong" | "doubtful" | "note";
 export interface ShownFigure { name: string; title: string; caption: string; svg: string; }
 export interface ShownMotion { time: number[]; displacement: number[]; rate: number[]; force: number[]; }
 export interface ShownSamples { time: number[]; value: number[]; }
@@ -440,7 +444,9 @@ export interface StatusOutcome { fitted: number; stored: number; failed: number;
 export interface StepOutcome {
   term: string; action: string; f: number | null; p: number | null; criterion: number | null; r2: number;
 }
-export interface StoredResults { outcome: AnyOutcome | null; findings: FindingKind[]; pending: number; time: string | null; }
+export interface StoredResults {
+  outcome: AnyOutcome | null; findings: FindingKind[]; pending: number; time: string | null;
+}
 export interface SumOfSquares { ss: number | null; df: number | null; }
 export type SurfaceAnswer = SurfaceOutcome & { maps: ResponseMap[]; command: string; };
 export interface SurfaceGiven {
@@ -525,10 +531,6 @@ export interface Call<Answer, Body = undefined, Query = undefined> {
 /** All requests by method and address. */
 export interface Calls {
   "GET /api/about": Call<About>;
-  "GET /api/findings": Call<Explanation[]>;
-  "GET /api/rigs": Call<RigForm[]>;
-  "GET /api/campaigns/{id}/momentum": Call<MomentumView>;
-  "PUT /api/campaigns/{id}/rig": Call<CampaignView, RigGiven>;
   "GET /api/campaigns": Call<CampaignEntry[]>;
   "POST /api/campaigns": Call<CampaignView, NewCampaign>;
   "GET /api/campaigns/{id}": Call<CampaignView>;
@@ -539,6 +541,7 @@ export interface Calls {
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
   "GET /api/campaigns/{id}/measured": Call<MeasuredView, undefined, { item?: string }>;
+  "GET /api/campaigns/{id}/momentum": Call<MomentumView>;
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;
   "GET /api/campaigns/{id}/outline": Call<Outline, undefined, { file: string; channel: string; from?: number; to?: number; points?: number }>;
   "PUT /api/campaigns/{id}/raw": Call<Uploaded, Blob, { file: string }>;
@@ -548,16 +551,19 @@ export interface Calls {
   "POST /api/campaigns/{id}/regress": Call<RegressAnswer, RegressGiven>;
   "GET /api/campaigns/{id}/report/{file}": Call<string>;
   "GET /api/campaigns/{id}/results": Call<StoredResults>;
+  "PUT /api/campaigns/{id}/rig": Call<CampaignView, RigGiven>;
   "POST /api/campaigns/{id}/surface": Call<SurfaceAnswer, SurfaceGiven>;
   "GET /api/campaigns/{id}/table": Call<DataTable, undefined, { file: string }>;
   "PUT /api/campaigns/{id}/table": Call<Uploaded, Blob, { file: string }>;
   "PUT /api/campaigns/{id}/text": Call<CampaignView, TextGiven>;
   "PUT /api/campaigns/{id}/window": Call<CampaignView, WindowGiven>;
   "POST /api/contours": Call<ContourMap, GridGiven>;
+  "GET /api/findings": Call<Explanation[]>;
   "GET /api/jobs": Call<JobView[]>;
   "GET /api/jobs/{job}": Call<JobView>;
   "DELETE /api/jobs/{job}": Call<JobView>;
   "GET /api/jobs/{job}/events": Call<string>;
+  "GET /api/rigs": Call<RigForm[]>;
   "GET /api/scenes": Call<SceneEntry[]>;
   "GET /api/scenes/{id}": Call<SceneView>;
   "GET /api/scenes/{id}/frames": Call<ArrayBuffer, undefined, { from?: number }>;
