@@ -36,6 +36,13 @@ const UNITS: [&[&str]; 9] = [
 /// Impacts from which a form reads the mass; more change it little.
 const LOOKED_AT: usize = 20;
 
+/// Kinds of rig without whose masses results would be those of an example.
+const ASKED: [TemplateKind; 3] = [
+    TemplateKind::Pendulum,
+    TemplateKind::Carriage,
+    TemplateKind::Drop,
+];
+
 /// What a form asks of one key of `[rig]`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema)]
 pub struct RigKey {
@@ -58,6 +65,8 @@ pub struct RigKey {
 pub struct RigForm {
     /// Kind, as `windfall new` calls it.
     pub kind: String,
+    /// Whether nothing is calculated with the values of the template.
+    pub asked: bool,
     /// Its keys, in the order of the template.
     pub keys: Vec<RigKey>,
 }
@@ -80,6 +89,7 @@ pub fn rig_forms() -> Result<Vec<RigForm>, Error> {
     let forms = TEMPLATES.iter().map(|(word, kind)| {
         Ok(RigForm {
             kind: (*word).to_owned(),
+            asked: ASKED.contains(kind),
             keys: rig_keys(*kind)?,
         })
     });
@@ -107,6 +117,7 @@ fn rig_keys(kind: TemplateKind) -> Result<Vec<RigKey>, Error> {
             needed: line.given && !reads_without(kind, &scratch, line.key)?,
         });
     }
+    keep_readable_words(kind, &scratch, &mut keys)?;
     Ok(keys)
 }
 
@@ -134,22 +145,64 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('"').skip(1).step_by(2)
 }
 
-/// Whether the template can be read without a key.
-fn reads_without(kind: TemplateKind, scratch: &Scratch, key: &str) -> Result<bool, Error> {
-    let text = template(kind);
-    let begins = format!("{key} = ");
-    let rig = rig_section(text);
-    let without: String = rig
-        .split_inclusive('\n')
-        .filter(|line| !line.starts_with(&begins))
-        .collect();
-    let directory = scratch.path().join(key);
+/// Whether the template can be read with some of the lines of its rig.
+///
+/// * `name`: a name of its own for the attempt
+fn reads(
+    kind: TemplateKind,
+    (scratch, name): (&Scratch, &str),
+    line: impl Fn(&str) -> Option<String>,
+) -> Result<bool, Error> {
+    let rig = rig_section(template(kind));
+    let kept: String = rig.split_inclusive('\n').filter_map(line).collect();
+    let text = template(kind).replace(rig, &kept);
+    let directory = scratch.path().join(name);
     write_template(kind, &directory)?;
-    let text = text.replace(rig, &without);
     replace_file(&directory.join(CAMPAIGN_FILE), |file| {
         file.write_all(text.as_bytes())
     })?;
     Ok(check_campaign(&directory).is_ok())
+}
+
+/// Whether the template can be read without a key.
+fn reads_without(kind: TemplateKind, scratch: &Scratch, key: &str) -> Result<bool, Error> {
+    let begins = format!("{key} = ");
+    let others = |line: &str| (!line.starts_with(&begins)).then(|| line.to_owned());
+    reads(kind, (scratch, key), others)
+}
+
+/// Removes the words that the reader does not take for a key: a key may mean something else on
+/// another rig. Beside it stands what is needed, and no more.
+fn keep_readable_words(
+    kind: TemplateKind,
+    scratch: &Scratch,
+    keys: &mut [RigKey],
+) -> Result<(), Error> {
+    let needed: Vec<String> = keys
+        .iter()
+        .filter(|own| own.needed)
+        .map(|own| format!("{} = ", own.key))
+        .chain(["[rig]".to_owned(), "kind = ".to_owned()])
+        .collect();
+    for key in keys {
+        let mut words = Vec::new();
+        for (number, word) in std::mem::take(&mut key.words).into_iter().enumerate() {
+            let begins = format!("{} = ", key.key);
+            let line = |line: &str| match line.starts_with(&begins) {
+                true => Some(format!("{begins}\"{word}\"\n")),
+                false => {
+                    let kept = needed.iter().any(|needed| line.starts_with(needed));
+                    kept.then(|| line.to_owned())
+                }
+            };
+            let name = format!("{}-{number}", key.key);
+            if reads(kind, (scratch, &name), line)? {
+                words.push(word);
+            }
+        }
+        key.words = words;
+    }
+    Ok(())
 }
 
 /// The lines below `[rig]`, up to the next table.
@@ -167,13 +220,11 @@ fn rig_section(text: &str) -> &str {
 /// # Errors
 /// campaign.toml cannot be read.
 pub fn rig_to_be_given(directory: &Path) -> Result<Option<String>, Error> {
-    if campaign_kind(directory)? != CampaignKind::Impacts {
-        return Ok(None);
-    }
     let text = campaign_text(directory)?.replace("\r\n", "\n");
     let own = rig_section(&text).trim_end();
     let untouched = TEMPLATES
         .iter()
+        .filter(|(_, kind)| ASKED.contains(kind))
         .find(|(_, kind)| own == rig_section(template(*kind)).trim_end());
     Ok(untouched.map(|(word, kind)| {
         let lines = rig_section(template(*kind)).lines().filter_map(key_of_line);
@@ -249,6 +300,7 @@ mod tests {
         assert_eq!(carriage[0].typical, "0.5 kg");
         let pendulum = keys("pendulum");
         assert_eq!(pendulum.len(), 5);
+        assert!(pendulum.iter().all(|key| key.words.is_empty()));
         assert!(
             pendulum
                 .iter()
@@ -281,9 +333,12 @@ mod tests {
         // The same mass, by somebody who says so.
         std::fs::write(&path, text.replace("\"0.5 kg\"  ", "\"500 g\"  ")).unwrap();
         check_rig_given(&directory).unwrap();
-        // Other kinds are asked nothing that they need.
         let drops = folder.path().join("drops");
         write_template(TemplateKind::Drop, &drops).unwrap();
-        check_rig_given(&drops).unwrap();
+        assert!(check_rig_given(&drops).is_err());
+        // Nothing is needed of this one.
+        let taps = folder.path().join("taps");
+        write_template(TemplateKind::Acoustic, &taps).unwrap();
+        check_rig_given(&taps).unwrap();
     }
 }

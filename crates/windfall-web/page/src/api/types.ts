@@ -389,7 +389,7 @@ export interface ResidualOutcome {
 export interface ResponseGiven { name: string; model: string; }
 export interface ResponseMap { response: string; map: ContourMap; errors: number[]; }
 export interface RidgeOutcome { of: string; radius: number; actual: number[]; value: number; }
-export interface RigForm { kind: string; keys: RigKey[]; }
+export interface RigForm { kind: string; asked: boolean; keys: RigKey[]; }
 export interface RigGiven { keys: Record<string, string>; }
 export interface RigKey {
   key: string; meaning: string; units: string[]; words: string[]; typical: string; needed: boolean;
