@@ -52,6 +52,9 @@ test("the overview has the list that the command prints, the gravest first, with
     all.map((own) => `${own.querySelector(".word").textContent} ${own.querySelector("strong").textContent}`),
   );
   assert.deepEqual(words, codes);
+  // What impulse and momentum say of the mass, beside inertia over arm squared, 0.01435/0.505² kg.
+  const rig = page.getByRole("region", { name: "The rig" });
+  await rig.getByText(/at the contact \(6 impacts\); your rig makes 0\.05627/).waitFor();
   // Shape as well as colour.
   const shapes = await shown.evaluateAll((all) => all.map((own) => own.querySelector(".body").outerHTML));
   assert.equal(new Set(shapes).size, new Set(codes.map((code) => code.split(" ")[0])).size);

@@ -211,15 +211,12 @@ test("a new campaign: a file is imported, its channels mapped, an impact added a
   await page.getByLabel("Specimen of the impact in stoss-1.csv").fill("apfel-1");
   await page.getByRole("button", { name: "Add 1 impact" }).click();
 
-  // The mass of the template is nobody's: it is asked for, beside what the recording says.
+  // The mass of the template is nobody's: it is asked for. Inertia over arm squared of the
+  // pendulum that was simulated is 0.01435/0.505² kg.
   await title("Impact stoss-1");
   await page.getByText("mass 0.5 kg").waitFor();
   await page.getByRole("link", { name: "Give the rig" }).click();
   const rig = page.getByRole("region", { name: "The rig" });
-  await rig.getByText(/at the contact \(1 impact\)/).waitFor();
-  const [, told] = /makes\s+([\d.]+) ± /.exec(await rig.textContent()) ?? [];
-  // Inertia over arm squared of the pendulum that was simulated: 0.01435/0.505² kg.
-  assert.ok(Math.abs(Number(told) - 0.05627) < 0.002, `${told} kg`);
   await rig.getByLabel("Mass (needed)").fill("56.27");
   await rig.getByLabel("Unit of mass", { exact: true }).selectOption("g");
   await rig.getByLabel("Driving acceleration (needed)").fill("0");
