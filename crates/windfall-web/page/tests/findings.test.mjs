@@ -54,7 +54,8 @@ test("the overview has the list that the command prints, the gravest first, with
   assert.deepEqual(words, codes);
   // What impulse and momentum say of the mass, beside inertia over arm squared, 0.01435/0.505² kg.
   const rig = page.getByRole("region", { name: "The rig" });
-  await rig.getByText(/at the contact \(6 impacts\); your rig makes 0\.05627/).waitFor();
+  await rig.getByText("What the recordings say").waitFor();
+  assert.match(await rig.textContent(), /at the contact \(6\s+impacts\).*your rig makes\s+0\.05627/s);
   // Shape as well as colour.
   const shapes = await shown.evaluateAll((all) => all.map((own) => own.querySelector(".body").outerHTML));
   assert.equal(new Set(shapes).size, new Set(codes.map((code) => code.split(" ")[0])).size);
