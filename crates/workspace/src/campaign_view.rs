@@ -1,12 +1,13 @@
 //! A campaign as the page shows it, whatever it measures.
 
+use crate::undo::{History, StepView};
 use serde::Serialize;
 use std::path::Path;
 use std::time::SystemTime;
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
-use windfall_campaign::settings::kind::STORE_FILE;
+use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
 use windfall_campaign::settings::read::read_campaign;
@@ -112,10 +113,16 @@ pub struct CampaignView {
     pub report: bool,
     /// The command that fits the campaign.
     pub command: String,
+    /// The note on the campaign.
+    pub note: Option<String>,
+    /// The newest change of the page, which can be undone.
+    pub undo: Option<StepView>,
+    /// The change that was undone last, and can be done again.
+    pub redo: Option<StepView>,
 }
 
 /// A campaign of any kind: what all kinds share, and what only impacts have.
-fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Error> {
+pub(crate) fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Error> {
     if let Some(measurement) = measurement_of(campaign_kind(directory)?) {
         return Ok(((measurement.read)(directory)?, None));
     }
@@ -128,7 +135,10 @@ fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Erro
 /// # Errors
 /// One is a symbolic link, or no regular file.
 pub fn check_confined(directory: &Path) -> Result<(), Error> {
-    for name in CAMPAIGN_FILES.iter().chain(&[STORE_FILE, CARD_FILE]) {
+    for name in CAMPAIGN_FILES
+        .iter()
+        .chain(&[STORE_FILE, UNDO_FILE, CARD_FILE])
+    {
         check_regular(&path_inside(directory, name)?)?;
     }
     Ok(())
@@ -169,6 +179,7 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
     let text = campaign_text(directory)?;
     let tables: toml::Table = toml::from_str(&text).unwrap_or_default();
     let id = name_of(directory);
+    let (undo, redo) = History::read(directory).views();
     let untitled = directory.display().to_string();
     Ok(CampaignView {
         version,
@@ -197,6 +208,9 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
             .join("report.html")
             .is_file(),
         command: command(&["fit", &path_word(&id)]),
+        note: campaign.note,
+        undo,
+        redo,
         id,
     })
 }

@@ -3,10 +3,12 @@
 pub mod campaign_view;
 pub mod edit_campaign;
 pub mod equal_command;
+pub mod kept_work;
 pub mod live_cache;
 pub mod live_fit;
 pub mod measured_view;
 pub mod recording_outline;
 pub mod results_table;
 pub mod scene_runs;
+pub mod undo;
 pub mod workspace;

@@ -216,14 +216,17 @@ fn entry_of(directory: &Path) -> CampaignEntry {
 /// # Errors
 /// The campaign is wrong, or its store cannot be read.
 pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
-    let Some(run) = latest_run(&directory.join(STORE_FILE))? else {
+    let store = directory.join(STORE_FILE);
+    let run = latest_run(&store)?;
+    // A command that still fits writes its results before its run.
+    if run.is_none() && !store.exists() {
         let view = view_campaign(directory)?;
         return Ok(StoredResults {
             outcome: None,
             pending: view.impacts.rows.len(),
             time: None,
         });
-    };
+    }
     let request = FitRequest {
         reuse: Reuse::Only,
         ..FitRequest::default()
@@ -233,12 +236,13 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
         AnyOutcome::Impacts(outcome) => &mut outcome.failed,
         AnyOutcome::Measured(outcome) => &mut outcome.failed,
     };
-    let pending = with_reasons(failed, run.failures);
+    let (time, failures) = run.map(|run| (run.time, run.failures)).unzip();
+    let pending = with_reasons(failed, failures.into_iter().flatten());
     Ok(StoredResults {
         // Where everything failed, its reasons are a result.
         outcome: (outcome.results() + outcome.failed().len() > 0).then_some(outcome),
         pending,
-        time: Some(run.time),
+        time,
     })
 }
 

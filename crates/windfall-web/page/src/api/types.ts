@@ -44,8 +44,14 @@ export interface CampaignView {
   id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
   channels: ChannelView[]; time: string | null; rate: string | null; laws: string[]; options: FitOptionsView | null;
   group: string | null; specimens: TableView; impacts: TableView; text: string; tables: string[]; report: boolean;
-  command: string;
+  command: string; note: string | null; undo: StepView | null; redo: StepView | null;
 }
+export interface FileBeside { file: string; now: string; before: string; }
+export interface StepView { words: string; time: string; }
+export interface KeptWork { time: string; stale: boolean; job: JobView; }
+export interface NoteGiven { impact?: string | null; note: string; }
+export interface UndoGiven { way: Way; }
+export type Way = "undo" | "redo";
 export interface CandidateOutcome {
   height: number; mass: number; fruit: string; impacts: number; drops: number; sds: (number | null)[];
   gain: number | null; rank: number; gain_of_interest: number | null;
@@ -526,6 +532,10 @@ export interface Calls {
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
   "GET /api/campaigns/{id}/measured": Call<MeasuredView, undefined, { item?: string }>;
+  "PUT /api/campaigns/{id}/note": Call<CampaignView, NoteGiven>;
+  "POST /api/campaigns/{id}/undo": Call<CampaignView, UndoGiven>;
+  "GET /api/campaigns/{id}/undo": Call<FileBeside[], undefined, { way: Way }>;
+  "GET /api/campaigns/{id}/kept": Call<KeptWork[]>;
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;
   "GET /api/campaigns/{id}/outline": Call<Outline, undefined, { file: string; channel: string; from?: number; to?: number; points?: number }>;
   "PUT /api/campaigns/{id}/raw": Call<Uploaded, Blob, { file: string }>;
