@@ -35,7 +35,7 @@ export interface CampaignEntry {
   id: string; title: string; kind: string | null; recordings: number; run: RunView | null; problem: string | null;
 }
 export interface CampaignOutcome {
-  windfall: string; campaign: string; simulated: string | null; effective_mass: MassOutcome;
+  windfall: string; campaign: string; simulated: string | null; note: string | null; effective_mass: MassOutcome;
   bench: Record<string, PooledOutcome>; estimated: Record<string, BenchOutcome>; trends: TrendOutcome[];
   status: StatusOutcome; impacts: ImpactOutcome[]; failed: FailureOutcome[]; summary: Record<string, SpreadOutcome>;
   groups: GroupOutcome[]; joint: JointOutcome[]; findings: FindingOutcome[];
@@ -46,12 +46,6 @@ export interface CampaignView {
   group: string | null; specimens: TableView; impacts: TableView; text: string; tables: string[]; report: boolean;
   command: string; note: string | null; undo: StepView | null; redo: StepView | null;
 }
-export interface FileBeside { file: string; now: string; before: string; }
-export interface StepView { words: string; time: string; }
-export interface KeptWork { time: string; stale: boolean; job: JobView; }
-export interface NoteGiven { impact?: string | null; note: string; }
-export interface UndoGiven { way: Way; }
-export type Way = "undo" | "redo";
 export interface CandidateOutcome {
   height: number; mass: number; fruit: string; impacts: number; drops: number; sds: (number | null)[];
   gain: number | null; rank: number; gain_of_interest: number | null;
@@ -142,6 +136,7 @@ export interface FeaturesOutcome {
   directions: DirectionOutcome[]; chi_square: number; freedom: number; p: number | null; widened: number;
   fitted: FittedFeature[]; along: AlongOutcome[]; converged: boolean; evaluations: number;
 }
+export interface FileBeside { file: string; now: string; before: string; }
 export interface FindingOutcome { code: string; message: string; }
 export interface FitOptionsView {
   quantities: string[]; weights: string; noise: string; intervals: string; onset: string; initial_velocity: string;
@@ -213,6 +208,7 @@ export interface JointOutcome {
   correlations: Record<string, number>; common: Record<string, Record<string, number>>; chi_square: number;
   freedom: number; p: number; scale: number;
 }
+export interface KeptWork { time: string; stale: boolean; job: JobView; }
 export interface LackOfFitOutcome { lack: AnovaOutcome; pure_error: SumOfSquares; }
 export interface LawAbout { name: string; formula: string; parameters: ParameterAbout[]; notes: string; }
 export interface LawEvidenceOutcome {
@@ -255,9 +251,10 @@ export interface MeasuredItem {
   parameters: Record<string, MeasuredValue>; derived: Record<string, MeasuredValue>; findings: FindingOutcome[];
 }
 export interface MeasuredOutcome {
-  windfall: string; campaign: string; kind: string; simulated: string | null; status: StatusOutcome;
-  impacts: MeasuredItem[]; parts?: MeasuredItem[]; failed: FailureOutcome[]; specimens: MeasuredItem[];
-  whole: MeasuredItem[]; summary: Record<string, SpreadOutcome>; groups: MeasuredGroup[]; findings: FindingOutcome[];
+  windfall: string; campaign: string; kind: string; simulated: string | null; note: string | null;
+  status: StatusOutcome; impacts: MeasuredItem[]; parts?: MeasuredItem[]; failed: FailureOutcome[];
+  specimens: MeasuredItem[]; whole: MeasuredItem[]; summary: Record<string, SpreadOutcome>; groups: MeasuredGroup[];
+  findings: FindingOutcome[];
 }
 export interface MeasuredValue {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string;
@@ -287,6 +284,7 @@ export interface ModelResiduals {
 }
 export interface NewCampaign { id: string; kind: string; }
 export interface NextOutcome { interest: string; now: (number | null)[]; candidates: CandidateOutcome[]; }
+export interface NoteGiven { impact?: string | null; note: string; }
 export interface OnScale { value: number | null; low: number | null; high: number | null; }
 export interface OptionsGiven {
   laws?: string[] | null; free?: string[] | null; quantities?: string[] | null; weights?: string | null;
@@ -437,6 +435,7 @@ export interface StatusOutcome { fitted: number; stored: number; failed: number;
 export interface StepOutcome {
   term: string; action: string; f: number | null; p: number | null; criterion: number | null; r2: number;
 }
+export interface StepView { words: string; time: string; }
 export interface StoredResults { outcome: AnyOutcome | null; pending: number; time: string | null; }
 export interface SumOfSquares { ss: number | null; df: number | null; }
 export type SurfaceAnswer = SurfaceOutcome & { maps: ResponseMap[]; command: string; };
@@ -476,6 +475,7 @@ export interface TrendOutcome {
 export interface TwoStageOutcome {
   medians: RangeOutcome[]; between: RangeOutcome[]; correlations: number[]; effects: PopulationEffect[];
 }
+export interface UndoGiven { way: Way; }
 export interface Uploaded { file: string; bytes: number; sha256: string; recording: Inspection | null; }
 export interface VarianceOutcome {
   group: string; kind: string; of: string; value: number; low: number | null; high: number | null;
@@ -504,6 +504,7 @@ export interface WaveformOutcome {
 export interface WaveformParameter {
   name: string; value: MeasuredValue; sd_of_noise: number; per_millimetre: MeasuredValue | null;
 }
+export type Way = "undo" | "redo";
 export interface WeakOutcome { sd: number; shares: Record<string, number>; }
 export interface WholeModel { ss: number | null; df: number; f: number | null; p: number | null; }
 export interface WindowGiven { impact: string; from?: number | null; to?: number | null; }
@@ -531,11 +532,9 @@ export interface Calls {
   "PUT /api/campaigns/{id}/exclusion": Call<CampaignView, ExclusionGiven>;
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
+  "GET /api/campaigns/{id}/kept": Call<KeptWork[]>;
   "GET /api/campaigns/{id}/measured": Call<MeasuredView, undefined, { item?: string }>;
   "PUT /api/campaigns/{id}/note": Call<CampaignView, NoteGiven>;
-  "POST /api/campaigns/{id}/undo": Call<CampaignView, UndoGiven>;
-  "GET /api/campaigns/{id}/undo": Call<FileBeside[], undefined, { way: Way }>;
-  "GET /api/campaigns/{id}/kept": Call<KeptWork[]>;
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;
   "GET /api/campaigns/{id}/outline": Call<Outline, undefined, { file: string; channel: string; from?: number; to?: number; points?: number }>;
   "PUT /api/campaigns/{id}/raw": Call<Uploaded, Blob, { file: string }>;
@@ -549,6 +548,8 @@ export interface Calls {
   "GET /api/campaigns/{id}/table": Call<DataTable, undefined, { file: string }>;
   "PUT /api/campaigns/{id}/table": Call<Uploaded, Blob, { file: string }>;
   "PUT /api/campaigns/{id}/text": Call<CampaignView, TextGiven>;
+  "GET /api/campaigns/{id}/undo": Call<FileBeside[], undefined, { way: Way }>;
+  "POST /api/campaigns/{id}/undo": Call<CampaignView, UndoGiven>;
   "PUT /api/campaigns/{id}/window": Call<CampaignView, WindowGiven>;
   "POST /api/contours": Call<ContourMap, GridGiven>;
   "GET /api/jobs": Call<JobView[]>;
