@@ -300,7 +300,10 @@ mod tests {
         change_campaign(&directory, "*", &Change::CampaignNote("wet".to_owned())).unwrap();
         let view = change_campaign(&directory, "*", &excluded("b")).unwrap();
         let all = table();
-        assert_eq!((view.undo.unwrap().words.as_str(), view.redo), ("excluded b", None));
+        assert_eq!(
+            (view.undo.unwrap().words.as_str(), view.redo),
+            ("excluded b", None)
+        );
 
         let view = undo_change(&directory, "*", Way::Undo).unwrap();
         assert_eq!(table(), one);
@@ -328,14 +331,23 @@ mod tests {
         let by_hand = std::fs::read_to_string(&path).unwrap() + "c,f1,c.csv,,\n";
         std::fs::write(&path, &by_hand).unwrap();
         let refused = undo_change(&directory, "*", Way::Undo);
-        assert!(matches!(refused, Err(Error::ChangedSince { .. })), "{refused:?}");
+        assert!(
+            matches!(refused, Err(Error::ChangedSince { .. })),
+            "{refused:?}"
+        );
         assert_eq!(std::fs::read_to_string(&path).unwrap(), by_hand);
         let files = beside(&directory, Way::Undo).unwrap();
         assert_eq!(files.len(), 1);
-        assert_eq!((files[0].now.as_str(), files[0].before.as_str()), (by_hand.as_str(), TABLE));
+        assert_eq!(
+            (files[0].now.as_str(), files[0].before.as_str()),
+            (by_hand.as_str(), TABLE)
+        );
         // Another version than the page has seen.
         let refused = undo_change(&directory, "0", Way::Undo);
-        assert!(matches!(refused, Err(Error::ChangedMeanwhile)), "{refused:?}");
+        assert!(
+            matches!(refused, Err(Error::ChangedMeanwhile)),
+            "{refused:?}"
+        );
         // As it was again, it can be undone.
         let own = by_hand.replace("c,f1,c.csv,,\n", "");
         std::fs::write(&path, own).unwrap();
