@@ -156,10 +156,10 @@ pub fn change_campaign(
 pub fn undo_change(directory: &Path, version: &str, way: Way) -> Result<CampaignView, Error> {
     let _one = CHANGING.lock().unwrap_or_else(PoisonError::into_inner);
     check_version(directory, version)?;
-    let (files, stepped) = step(directory, way)?;
-    check_changed(directory, &files)?;
-    write_files(directory, &files)?;
-    stepped.write(directory)?;
+    let stepped = step(directory, way)?;
+    check_changed(directory, &stepped.files)?;
+    write_files(directory, &stepped.files)?;
+    stepped.write_history(directory)?;
     view_campaign(directory)
 }
 

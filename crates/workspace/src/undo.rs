@@ -168,15 +168,31 @@ pub(crate) fn keep_before(
     history.write(directory)
 }
 
-/// What going that way writes: names and texts, with the history that is true then.
+/// A step that is about to be made.
+#[derive(Debug)]
+pub(crate) struct Stepped {
+    /// Names and texts that it writes.
+    pub files: Vec<(&'static str, String)>,
+    /// The history once they are written.
+    history: History,
+}
+
+impl Stepped {
+    /// Writes the history.
+    ///
+    /// # Errors
+    /// undo.json cannot be written.
+    pub(crate) fn write_history(mut self, directory: &Path) -> Result<(), Error> {
+        self.history.write(directory)
+    }
+}
+
+/// What going that way writes.
 ///
 /// # Errors
 /// [`Error::ChangeRefused`] where there is no such change; [`Error::ChangedSince`] where one of
 /// its files is no longer what it made of it.
-pub(crate) fn step(
-    directory: &Path,
-    way: Way,
-) -> Result<(Vec<(&'static str, String)>, Stepped), Error> {
+pub(crate) fn step(directory: &Path, way: Way) -> Result<Stepped, Error> {
     let mut history = History::read(directory);
     let Some(step) = history.steps(way).pop() else {
         return Err(Error::ChangeRefused {
@@ -213,21 +229,7 @@ pub(crate) fn step(
         files: back,
         ..step
     });
-    Ok((files, Stepped(history)))
-}
-
-/// The history once a step is made.
-#[derive(Debug)]
-pub(crate) struct Stepped(History);
-
-impl Stepped {
-    /// Writes it.
-    ///
-    /// # Errors
-    /// undo.json cannot be written.
-    pub(crate) fn write(mut self, directory: &Path) -> Result<(), Error> {
-        self.0.write(directory)
-    }
+    Ok(Stepped { files, history })
 }
 
 /// The files of the newest change as they are, and as undoing it would make them.
