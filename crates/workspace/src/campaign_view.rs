@@ -1,12 +1,12 @@
 //! A campaign as the page shows it, whatever it measures.
 
+use crate::campaign_files::{CAMPAIGN_FILES, campaign_version};
 use crate::undo::{History, StepView};
 use serde::Serialize;
 use std::path::Path;
 use std::time::SystemTime;
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
-use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
 use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
@@ -16,7 +16,6 @@ use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
 use windfall_files::name::Name;
 use windfall_files::option_value::word_of;
-use windfall_files::provenance::digest_text;
 use windfall_files::text::quote::{command, path_word};
 use windfall_files::write_file::sweep;
 use windfall_identify::fit::problem::FitOptions;
@@ -26,9 +25,6 @@ use windfall_report::stored_card::CARD_FILE;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
 pub const TABLES_DIRECTORY: &str = "tables";
-
-/// Files that make a campaign; the store and the recordings are no part of it.
-pub const CAMPAIGN_FILES: [&str; 3] = [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"];
 
 /// A table of text.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema)]
@@ -213,25 +209,6 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
         redo,
         id,
     })
-}
-
-/// Digest of the files of a campaign; one that is absent counts as empty.
-///
-/// # Errors
-/// One of them cannot be read.
-pub fn campaign_version(directory: &Path) -> Result<String, Error> {
-    let mut all = String::new();
-    for name in CAMPAIGN_FILES {
-        let path = directory.join(name);
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-            Err(source) => return Err(Error::access(&path, "read", source)),
-        };
-        let text = String::from_utf8_lossy(&bytes);
-        all += &format!("{name} {}\n{text}\n", bytes.len());
-    }
-    Ok(digest_text(&all)[..16].to_owned())
 }
 
 /// What changes when the files of a campaign or its store do.

@@ -2,8 +2,9 @@
 //! campaign is checked before it replaces the old one, and a change based on an outdated
 //! version is refused.
 
+use crate::campaign_files::CAMPAIGN_FILES;
 use crate::campaign_view::{
-    CAMPAIGN_FILES, CampaignView, check_campaign, file_plan_of, signed_unit, view_campaign,
+    CampaignView, check_campaign, file_plan_of, signed_unit, view_campaign,
 };
 use crate::undo::{Way, check_version, keep_before, step};
 use crate::workspace::recordings_inside;
@@ -127,7 +128,7 @@ pub struct NewImpact {
 
 /// Changes a campaign that is of that version, and shows what it is then.
 ///
-/// * `version`: as [`crate::campaign_view::campaign_version`] gives it; "*" for whatever it is now
+/// * `version`: as [`crate::campaign_files::campaign_version`] gives it; "*" for whatever it is now
 ///
 /// # Errors
 /// [`Error::ChangedMeanwhile`]; the change makes no campaign that can be read; a file

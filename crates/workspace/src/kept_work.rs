@@ -1,7 +1,8 @@
 //! The newest comparison of laws, population and calibration of a campaign, kept in its store
 //! with what they were made of, so that the page shows them again at once.
 
-use crate::campaign_view::{campaign_version, read_any};
+use crate::campaign_files::campaign_version;
+use crate::campaign_view::read_any;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::Path;

@@ -1,5 +1,6 @@
 //! A directory of campaigns as the page shows and edits it.
 
+pub mod campaign_files;
 pub mod campaign_view;
 pub mod edit_campaign;
 pub mod equal_command;

@@ -4,7 +4,7 @@
 //! A change is undone only while its files are as it left them: what was changed since, in the
 //! page or with an editor, is never lost.
 
-use crate::campaign_view::{CAMPAIGN_FILES, campaign_version};
+use crate::campaign_files::{CAMPAIGN_FILES, campaign_version};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;

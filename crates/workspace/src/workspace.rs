@@ -1,15 +1,14 @@
 //! A directory with campaigns in it, or a campaign itself: which there are, and in what
 //! state.
 
-use crate::campaign_view::{
-    CAMPAIGN_FILES, check_confined, file_plan_of, name_of, names_in, view_campaign,
-};
+use crate::campaign_files::CAMPAIGN_FILES;
+use crate::campaign_view::{check_confined, file_plan_of, name_of, names_in, view_campaign};
 use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
-use windfall_campaign::settings::kind::STORE_FILE;
+use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
 use windfall_campaign::settings::model::FilePlan;
 use windfall_campaign::store::runs::{RunIdentity, latest_run};
 use windfall_files::confined::path_inside;
@@ -307,7 +306,10 @@ pub fn recordings_of(directory: &Path) -> Result<Vec<RecordingEntry>, Error> {
     let mut names = names_in(&raw)?;
     // Where recordings lie beside them, the files of the campaign are none.
     if raw.as_path() == directory {
-        let own = |name: &String| CAMPAIGN_FILES.contains(&name.as_str()) || name == STORE_FILE;
+        let own = |name: &String| {
+            CAMPAIGN_FILES.contains(&name.as_str())
+                || [STORE_FILE, UNDO_FILE].contains(&name.as_str())
+        };
         names.retain(|name| !own(name));
     }
     for folder in folders_in(&raw) {
