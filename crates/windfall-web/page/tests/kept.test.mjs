@@ -139,7 +139,7 @@ test("a regression comes back with its table and formula", async () => {
   await page.getByRole("button", { name: /^Fit/ }).click();
   await page.getByText("Everything is fitted").waitFor();
   await visit(page, "#/c/apples/regress?table=tables/results.csv&response=log(k)&formula=impact_velocity_m_s&columns=impact_velocity_m_s;weight");
-  await page.getByText("which was left out: weight").waitFor();
+  await page.getByText("which was left out: weight.").waitFor();
   const formula = page.getByRole("textbox", { name: /Formula/ });
   assert.equal(await formula.inputValue(), "impact_velocity_m_s");
   await page.getByText("Formula: log(k) ~").waitFor();
