@@ -54,6 +54,8 @@ pub struct Report {
     pub made: String,
     /// Label of simulated recordings.
     pub simulated: Option<String>,
+    /// Remark on the campaign.
+    pub note: Option<String>,
     /// What a reader must know before the rest.
     pub findings: Vec<FindingOutcome>,
     /// What was left out.
@@ -71,6 +73,7 @@ h1, h2, h3, nav, table, figcaption, .made { font-family: Helvetica, Arial, 'Libe
 h1 { font-size: 1.6rem; line-height: 1.25; margin-bottom: 0.2rem; }
 h2 { font-size: 1.2rem; margin-top: 2.2rem; border-bottom: 1px solid var(--figure-frame); }
 .made { font-size: 0.85rem; opacity: 0.85; }
+.note { white-space: pre-line; }
 .simulated { border: 2px solid var(--series-2); padding: 0.4rem 0.8rem; font-weight: bold; }
 nav ul { columns: 2; padding-left: 1.2rem; font-size: 0.9rem; }
 a { color: var(--series-1); }
@@ -123,6 +126,9 @@ pub fn html_of_report(report: &Report) -> String {
                     p class="made" { (report.made) }
                     @if let Some(label) = &report.simulated {
                         p class="simulated" { "Simulated recordings: " (label) }
+                    }
+                    @if let Some(note) = &report.note {
+                        p class="note" { b { "Note: " } (note) }
                     }
                 }
                 nav aria-label="Contents" {
@@ -256,6 +262,7 @@ mod tests {
             title: hostile.to_owned(),
             made: String::new(),
             simulated: None,
+            note: None,
             findings: vec![FindingOutcome::new("clipped", hostile)],
             failed: Vec::new(),
             sections: vec![Section {

@@ -63,6 +63,16 @@ pub enum Error {
         "the files of the campaign have changed since they were read; nothing was written. Read them again and repeat the change"
     )]
     ChangedMeanwhile,
+    /// A change that cannot be undone, because its files are no longer what it made of them.
+    #[error(
+        "{file} was changed again after this change ({change}); undoing it would lose that, so nothing was written"
+    )]
+    ChangedSince {
+        /// The file.
+        file: String,
+        /// What the change did.
+        change: String,
+    },
     /// A name that would lead out of a directory, or that some system cannot have.
     #[error("the name \"{name}\" {problem}")]
     NameRefused {

@@ -173,6 +173,9 @@ pub struct MeasuredOutcome {
     pub kind: String,
     /// Label of simulated recordings.
     pub simulated: Option<String>,
+    /// Remark on the campaign.
+    #[serde(default)]
+    pub note: Option<String>,
     /// How the results came about.
     pub status: StatusOutcome,
     /// One entry per recording and law.

@@ -282,6 +282,7 @@ impl<K: Measurement> Measured<K> {
             campaign: campaign.title.clone(),
             kind: campaign.kind.name().to_owned(),
             simulated: campaign.simulated.clone(),
+            note: campaign.note.clone(),
             status: StatusOutcome {
                 failed: failed.len(),
                 ..self.evaluated.status

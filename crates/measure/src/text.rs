@@ -20,7 +20,11 @@ const LISTED: usize = 40;
 
 /// Tables for people: recordings, specimens, the whole, findings.
 pub fn text_of_measured(outcome: &MeasuredOutcome) -> String {
-    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
+    let mut text = title_lines(
+        &outcome.campaign,
+        outcome.simulated.as_deref(),
+        outcome.note.as_deref(),
+    );
     let of_specimens = outcome.shown.specimens;
     for law in laws_of(&outcome.impacts) {
         let items = of_law(&outcome.impacts, law);

@@ -13,8 +13,9 @@ use windfall_campaign::impacts::key::run_options;
 use windfall_campaign::impacts::run::{FittedCampaign, fitted_campaign};
 use windfall_campaign::pipeline::request::FitRequest;
 use windfall_campaign::recording::digests::{Digests, run_origin};
+use windfall_campaign::result::counted::NOTE_COLUMN;
 use windfall_campaign::settings::kind::campaign_kind;
-use windfall_campaign::settings::model::{Campaign, FilePlan};
+use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactEntry};
 use windfall_draw::files::{FigureFolder, FigureFormat, NamedFigure, write_figures};
 use windfall_draw::page::{CaptionedTable, Report, Section, html_of_report};
 use windfall_draw::theme::FigureTheme;
@@ -119,14 +120,16 @@ fn report_impacts(request: &ReportRequest, fitted: FittedCampaign) -> Result<Rep
         true => Vec::new(),
         false => sections_of_campaign(&campaign, &rig, &outcome)?,
     };
+    let sections = sections.into_iter().chain(notes_section(&campaign.shared));
     let source = Source::of(&campaign.shared, &digests, run_options(&campaign))?;
     let report = Report {
         title: outcome.campaign.clone(),
         made: String::new(),
         simulated: outcome.simulated.clone(),
+        note: outcome.note.clone(),
         findings: findings_once(&outcome),
         failed: outcome.failed.clone(),
-        sections,
+        sections: sections.collect(),
     };
     let any = AnyOutcome::Impacts(Box::new(outcome));
     write(request, &source, report, &any)
@@ -139,12 +142,27 @@ fn report_items(request: &ReportRequest, reported: ReportedItems) -> Result<Repo
         title: outcome.campaign.clone(),
         made: String::new(),
         simulated: outcome.simulated.clone(),
+        note: outcome.note.clone(),
         findings: findings_of_measured(outcome),
         failed: outcome.failed.clone(),
-        sections: sections_of_items(&reported),
+        sections: sections_of_items(&reported)
+            .into_iter()
+            .chain(notes_section(campaign))
+            .collect(),
     };
     let any = AnyOutcome::Measured(Box::new(outcome.clone()));
     write(request, &source, report, &any)
+}
+
+/// What impacts.csv says in words of single impacts, whether they count or not.
+fn notes_section(campaign: &Campaign) -> Option<Section> {
+    let line = |entry: &ImpactEntry| {
+        let mut cells = entry.cells.iter();
+        let (_, note) = cells.find(|(name, _)| name == NOTE_COLUMN)?;
+        (!note.trim().is_empty()).then(|| format!("{}: {}", entry.id, note.trim()))
+    };
+    let lines: Vec<String> = campaign.entries.iter().filter_map(line).collect();
+    (!lines.is_empty()).then(|| Section::of_words("Notes on single impacts", lines))
 }
 
 /// Where the results of a report come from.

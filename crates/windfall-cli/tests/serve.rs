@@ -662,6 +662,56 @@ fn a_change_on_the_ground_of_an_older_version_changes_nothing() {
 }
 
 #[test]
+fn a_change_is_undone_while_its_files_are_as_it_left_them() {
+    let (folder, campaign) = bench("1");
+    let running = serve(folder.path(), &[]);
+    let table = || std::fs::read_to_string(campaign.join("impacts.csv")).unwrap();
+    let before = table();
+    let send = |method: &str, name: &str, body: &Value| {
+        let path = format!("/api/campaigns/bench/{name}");
+        running.page(method, &path, Some("*"), body)
+    };
+    let id = running.get("/api/campaigns/bench").json()["impacts"]["rows"][0][0].clone();
+    let noted = send("PUT", "note", &json!({"impact": id, "note": "fell twice"}));
+    assert_eq!(noted.status, 200, "{}", noted.text());
+    assert!(table().contains("fell twice"));
+    let lines = json!({"impact": id, "note": "two\nlines"});
+    assert_eq!(send("PUT", "note", &lines).status, 400);
+    let on_all = send("PUT", "note", &json!({"note": "two\nlines"})).json();
+    assert_eq!(on_all["note"], "two\nlines");
+    assert_eq!(on_all["undo"]["words"], "changed the note on the campaign");
+    assert_eq!(fitted(&campaign, &[])["note"], "two\nlines");
+
+    let undo = json!({"way": "undo"});
+    assert_eq!(send("POST", "undo", &undo).json()["note"], Value::Null);
+    let edited = table() + "\n";
+    std::fs::write(campaign.join("impacts.csv"), &edited).unwrap();
+    let refused = send("POST", "undo", &undo);
+    assert_eq!(
+        (refused.status, &refused.json()["code"]),
+        (409, &json!("changed-since")),
+        "{}",
+        refused.text()
+    );
+    assert_eq!(table(), edited);
+    let beside = running.get("/api/campaigns/bench/undo?way=undo").json();
+    assert_eq!(beside[0]["now"], edited.as_str());
+    assert_eq!(beside[0]["before"], before.as_str());
+    std::fs::write(
+        campaign.join("impacts.csv"),
+        edited.trim_end_matches('\n').to_owned() + "\n",
+    )
+    .unwrap();
+    let undone = send("POST", "undo", &undo);
+    assert_eq!(undone.status, 200, "{}", undone.text());
+    assert_eq!(table(), before);
+    assert_eq!(send("POST", "undo", &undo).status, 422);
+    let redone = send("POST", "undo", &json!({"way": "redo"})).json();
+    assert_eq!(redone["redo"]["words"], "changed the note on the campaign");
+    assert!(table().contains("fell twice"));
+}
+
+#[test]
 fn a_file_arrives_whole_or_not_at_all() {
     let (folder, campaign) = bench("1");
     let running = serve(folder.path(), &["--upload-limit", "1"]);

@@ -10,7 +10,7 @@ pub(crate) struct ChangeProblems;
 
 impl IntoResponses for ChangeProblems {
     fn responses() -> BTreeMap<String, RefOr<Response>> {
-        problems(&[400, 403, 404, 412, 415, 422, 428])
+        problems(&[400, 403, 404, 409, 412, 415, 422, 428])
     }
 }
 

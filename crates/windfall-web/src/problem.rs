@@ -51,6 +51,7 @@ impl Problem {
             | Error::FileAbsent { .. } => (StatusCode::NOT_FOUND, "absent"),
             Error::AlreadyThere { .. } => (StatusCode::CONFLICT, "exists"),
             Error::ChangedMeanwhile => (StatusCode::PRECONDITION_FAILED, "changed-meanwhile"),
+            Error::ChangedSince { .. } => (StatusCode::CONFLICT, "changed-since"),
             Error::NameRefused { .. } => (StatusCode::BAD_REQUEST, "name"),
             Error::RecordingsElsewhere => (StatusCode::FORBIDDEN, "elsewhere"),
             Error::Cancelled => (StatusCode::CONFLICT, "cancelled"),

@@ -1,14 +1,15 @@
 //! A campaign as the page shows it, whatever it measures.
 
+use crate::campaign_files::{CAMPAIGN_FILES, campaign_version};
 use crate::rig_form::rig_to_be_given;
+use crate::undo::{History, StepView};
 use serde::Serialize;
 use std::path::Path;
 use std::time::SystemTime;
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
-use windfall_campaign::settings::kind::CAMPAIGN_FILE;
-use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::settings::kind::campaign_kind;
+use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
 use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
 use windfall_campaign::settings::read::read_campaign;
 use windfall_files::confined::path_inside;
@@ -16,7 +17,6 @@ use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
 use windfall_files::name::Name;
 use windfall_files::option_value::word_of;
-use windfall_files::provenance::digest_text;
 use windfall_files::text::quote::{command, path_word};
 use windfall_files::write_file::sweep;
 use windfall_identify::fit::problem::FitOptions;
@@ -26,9 +26,6 @@ use windfall_report::stored_card::CARD_FILE;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
 pub const TABLES_DIRECTORY: &str = "tables";
-
-/// Files that make a campaign; the store and the recordings are no part of it.
-pub const CAMPAIGN_FILES: [&str; 3] = [CAMPAIGN_FILE, "specimens.csv", "impacts.csv"];
 
 /// A table of text.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema)]
@@ -115,10 +112,16 @@ pub struct CampaignView {
     pub report: bool,
     /// The command that fits the campaign.
     pub command: String,
+    /// The note on the campaign.
+    pub note: Option<String>,
+    /// The newest change of the page, which can be undone.
+    pub undo: Option<StepView>,
+    /// The change that was undone last, and can be done again.
+    pub redo: Option<StepView>,
 }
 
 /// A campaign of any kind: what all kinds share, and what only impacts have.
-fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Error> {
+pub(crate) fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Error> {
     if let Some(measurement) = measurement_of(campaign_kind(directory)?) {
         return Ok(((measurement.read)(directory)?, None));
     }
@@ -131,7 +134,10 @@ fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Erro
 /// # Errors
 /// One is a symbolic link, or no regular file.
 pub fn check_confined(directory: &Path) -> Result<(), Error> {
-    for name in CAMPAIGN_FILES.iter().chain(&[STORE_FILE, CARD_FILE]) {
+    for name in CAMPAIGN_FILES
+        .iter()
+        .chain(&[STORE_FILE, UNDO_FILE, CARD_FILE])
+    {
         check_regular(&path_inside(directory, name)?)?;
     }
     Ok(())
@@ -172,6 +178,7 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
     let text = campaign_text(directory)?;
     let tables: toml::Table = toml::from_str(&text).unwrap_or_default();
     let id = name_of(directory);
+    let (undo, redo) = History::read(directory).views();
     let untitled = directory.display().to_string();
     Ok(CampaignView {
         version,
@@ -201,27 +208,11 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
             .join("report.html")
             .is_file(),
         command: command(&["fit", &path_word(&id)]),
+        note: campaign.note,
+        undo,
+        redo,
         id,
     })
-}
-
-/// Digest of the files of a campaign; one that is absent counts as empty.
-///
-/// # Errors
-/// One of them cannot be read.
-pub fn campaign_version(directory: &Path) -> Result<String, Error> {
-    let mut all = String::new();
-    for name in CAMPAIGN_FILES {
-        let path = directory.join(name);
-        let bytes = match std::fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
-            Err(source) => return Err(Error::access(&path, "read", source)),
-        };
-        let text = String::from_utf8_lossy(&bytes);
-        all += &format!("{name} {}\n{text}\n", bytes.len());
-    }
-    Ok(digest_text(&all)[..16].to_owned())
 }
 
 /// What changes when the files of a campaign or its store do.

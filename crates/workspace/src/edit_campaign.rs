@@ -2,10 +2,11 @@
 //! campaign is checked before it replaces the old one, and a change based on an outdated
 //! version is refused.
 
+use crate::campaign_files::CAMPAIGN_FILES;
 use crate::campaign_view::{
-    CAMPAIGN_FILES, CampaignView, campaign_version, check_campaign, file_plan_of, signed_unit,
-    view_campaign,
+    CampaignView, check_campaign, file_plan_of, signed_unit, view_campaign,
 };
+use crate::undo::{Way, check_version, keep_before, step};
 use crate::workspace::recordings_inside;
 use itertools::Itertools;
 use serde::Deserialize;
@@ -55,6 +56,15 @@ pub enum Change {
         /// Why; what there is stays where this is blank.
         note: String,
     },
+    /// A note on an impact, whether it counts or not; a blank one takes it away.
+    Note {
+        /// Id of the impact.
+        impact: String,
+        /// The note.
+        note: String,
+    },
+    /// The note on the campaign; a blank one takes it away.
+    CampaignNote(String),
     /// Keys of `[fit]`, and the column to group by.
     Options(OptionsChange),
     /// Keys of `[rig]` by their text; a key of no text is removed.
@@ -120,7 +130,7 @@ pub struct NewImpact {
 
 /// Changes a campaign that is of that version, and shows what it is then.
 ///
-/// * `version`: as [`campaign_version`] gives it; "*" for whatever it is now
+/// * `version`: as [`crate::campaign_files::campaign_version`] gives it; "*" for whatever it is now
 ///
 /// # Errors
 /// [`Error::ChangedMeanwhile`]; the change makes no campaign that can be read; a file
@@ -131,16 +141,61 @@ pub fn change_campaign(
     change: &Change,
 ) -> Result<CampaignView, Error> {
     let _one = CHANGING.lock().unwrap_or_else(PoisonError::into_inner);
-    if version != "*" && campaign_version(directory)? != version {
-        return Err(Error::ChangedMeanwhile);
-    }
+    check_version(directory, version)?;
     let files = changed_files(directory, change)?;
     check_changed(directory, &files)?;
-    for (name, text) in &files {
-        let text = text.as_bytes();
-        replace_file(&directory.join(name), |file| file.write_all(text))?;
-    }
+    // Kept first: there is no moment at which the text of before is nowhere.
+    keep_before(directory, change.words(), &files)?;
+    write_files(directory, &files)?;
     view_campaign(directory)
+}
+
+/// Undoes the newest change of a campaign that is of that version, or does the one again that
+/// was undone last, and shows what the campaign is then.
+///
+/// # Errors
+/// Those of [`change_campaign`]; there is no such change; [`Error::ChangedSince`]. Then all is
+/// as it was.
+pub fn undo_change(directory: &Path, version: &str, way: Way) -> Result<CampaignView, Error> {
+    let _one = CHANGING.lock().unwrap_or_else(PoisonError::into_inner);
+    check_version(directory, version)?;
+    let stepped = step(directory, way)?;
+    check_changed(directory, &stepped.files)?;
+    write_files(directory, &stepped.files)?;
+    stepped.write_history(directory)?;
+    view_campaign(directory)
+}
+
+fn write_files(directory: &Path, files: &[(&'static str, String)]) -> Result<(), Error> {
+    files.iter().try_for_each(|(name, text)| {
+        let text = text.as_bytes();
+        replace_file(&directory.join(name), |file| file.write_all(text))
+    })
+}
+
+impl Change {
+    /// What it does, as it is named where it can be undone: "excluded apple-07".
+    fn words(&self) -> String {
+        match self {
+            Self::Text(_) => "changed campaign.toml".to_owned(),
+            Self::Window { impact, .. } => format!("changed the window of {impact}"),
+            Self::Exclusion {
+                impact,
+                excluded: true,
+                ..
+            } => format!("excluded {impact}"),
+            Self::Exclusion { impact, .. } => format!("counted {impact} again"),
+            Self::Note { impact, .. } => format!("changed the note on {impact}"),
+            Self::CampaignNote(_) => "changed the note on the campaign".to_owned(),
+            Self::Options(_) => "changed laws and options".to_owned(),
+            Self::Rig(_) => "changed the rig".to_owned(),
+            Self::Channels(_) => "changed channels".to_owned(),
+            Self::Impacts(rows) => match rows.as_slice() {
+                [one] => format!("added {}", one.id),
+                _ => format!("added {} impacts", rows.len()),
+            },
+        }
+    }
 }
 
 /// Names and texts of the files that a change writes.
@@ -166,6 +221,21 @@ fn changed_files(directory: &Path, change: &Change) -> Result<Vec<(&'static str,
                 cells.push((NOTE_COLUMN, note.trim().to_owned()));
             }
             Ok(vec![("impacts.csv", set_cells(&impacts, impact, &cells)?)])
+        }
+        Change::Note { impact, note } => {
+            let cells = [(NOTE_COLUMN, note.trim().to_owned())];
+            Ok(vec![("impacts.csv", set_cells(&impacts, impact, &cells)?)])
+        }
+        Change::CampaignNote(note) => {
+            let mut document = document(directory)?;
+            let campaign = table(&mut document, "campaign")?;
+            match note.trim() {
+                "" => {
+                    campaign.remove("note");
+                }
+                note => set(campaign, "note", value(note)),
+            }
+            Ok(vec![(CAMPAIGN_FILE, document.to_string())])
         }
         Change::Options(options) => {
             let mut document = document(directory)?;

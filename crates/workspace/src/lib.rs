@@ -1,8 +1,10 @@
 //! A directory of campaigns as the page shows and edits it.
 
+pub mod campaign_files;
 pub mod campaign_view;
 pub mod edit_campaign;
 pub mod equal_command;
+pub mod kept_work;
 pub mod live_cache;
 pub mod live_fit;
 pub mod measured_view;
@@ -10,4 +12,5 @@ pub mod recording_outline;
 pub mod results_table;
 pub mod rig_form;
 pub mod scene_runs;
+pub mod undo;
 pub mod workspace;

@@ -1,6 +1,6 @@
 //! Recordings being viewed, cached in memory while there is room.
 
-use crate::campaign_view::campaign_version;
+use crate::campaign_files::campaign_version;
 use crate::live_fit::{LiveCampaign, LiveImpact};
 use crate::recording_outline::OutlinedChannel;
 use crate::workspace::recordings_inside;

@@ -1,15 +1,14 @@
 //! A directory with campaigns in it, or a campaign itself: which there are, and in what
 //! state.
 
-use crate::campaign_view::{
-    CAMPAIGN_FILES, check_confined, file_plan_of, name_of, names_in, view_campaign,
-};
+use crate::campaign_files::CAMPAIGN_FILES;
+use crate::campaign_view::{check_confined, file_plan_of, name_of, names_in, view_campaign};
 use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
-use windfall_campaign::settings::kind::STORE_FILE;
+use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
 use windfall_campaign::settings::model::FilePlan;
 use windfall_campaign::store::runs::{RunIdentity, latest_run};
 use windfall_files::confined::path_inside;
@@ -219,7 +218,10 @@ fn entry_of(directory: &Path) -> CampaignEntry {
 /// # Errors
 /// The campaign is wrong, or its store cannot be read.
 pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
-    let Some(run) = latest_run(&directory.join(STORE_FILE))? else {
+    let store = directory.join(STORE_FILE);
+    let run = latest_run(&store)?;
+    // A command that still fits writes its results before its run.
+    if run.is_none() && !store.exists() {
         let view = view_campaign(directory)?;
         return Ok(StoredResults {
             outcome: None,
@@ -227,7 +229,7 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
             pending: view.impacts.rows.len(),
             time: None,
         });
-    };
+    }
     let request = FitRequest {
         reuse: Reuse::Only,
         ..FitRequest::default()
@@ -237,13 +239,14 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
         AnyOutcome::Impacts(outcome) => &mut outcome.failed,
         AnyOutcome::Measured(outcome) => &mut outcome.failed,
     };
-    let pending = with_reasons(failed, run.failures);
+    let (time, failures) = run.map(|run| (run.time, run.failures)).unzip();
+    let pending = with_reasons(failed, failures.into_iter().flatten());
     Ok(StoredResults {
         // Where everything failed, its reasons are a result.
         findings: outcome.finding_kinds(),
         outcome: (outcome.results() + outcome.failed().len() > 0).then_some(outcome),
         pending,
-        time: Some(run.time),
+        time,
     })
 }
 
@@ -308,7 +311,10 @@ pub fn recordings_of(directory: &Path) -> Result<Vec<RecordingEntry>, Error> {
     let mut names = names_in(&raw)?;
     // Where recordings lie beside them, the files of the campaign are none.
     if raw.as_path() == directory {
-        let own = |name: &String| CAMPAIGN_FILES.contains(&name.as_str()) || name == STORE_FILE;
+        let own = |name: &String| {
+            CAMPAIGN_FILES.contains(&name.as_str())
+                || [STORE_FILE, UNDO_FILE].contains(&name.as_str())
+        };
         names.retain(|name| !own(name));
     }
     for folder in folders_in(&raw) {

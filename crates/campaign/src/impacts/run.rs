@@ -368,6 +368,7 @@ fn outcome_of(fits: &Fits, evaluated: &mut Evaluated<ImpactOutcome>) -> Campaign
         windfall: VERSION.to_owned(),
         campaign: campaign.shared.title.clone(),
         simulated: campaign.shared.simulated.clone(),
+        note: campaign.shared.note.clone(),
         effective_mass: rig.mass,
         bench,
         estimated,

@@ -20,7 +20,11 @@ const OF_IMPACTS: [&str; 3] = ["impact_velocity", "restitution", "absorbed_energ
 
 /// A campaign's results: impacts, groups, what was left out, findings.
 pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
-    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
+    let mut text = title_lines(
+        &outcome.campaign,
+        outcome.simulated.as_deref(),
+        outcome.note.as_deref(),
+    );
     let _ = writeln!(text, "{}", counted_line(outcome));
     let _ = writeln!(text, "{}", mass_line(outcome));
     for line in bench_lines(outcome) {

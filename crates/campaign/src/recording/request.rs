@@ -159,6 +159,7 @@ fn campaign_of(
         kind: CampaignKind::Impacts,
         title: file.display().to_string(),
         simulated: None,
+        note: None,
         files,
         group: None,
         specimens: Vec::new(),

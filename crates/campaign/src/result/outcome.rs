@@ -254,6 +254,9 @@ pub struct CampaignOutcome {
     pub campaign: String,
     /// Label of simulated recordings.
     pub simulated: Option<String>,
+    /// Remark on the campaign.
+    #[serde(default)]
+    pub note: Option<String>,
     /// Effective mass at the contact.
     pub effective_mass: MassOutcome,
     /// Gain and delay of the force over all impacts, by Newton's law: "force_gain",

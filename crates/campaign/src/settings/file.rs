@@ -68,6 +68,8 @@ pub struct TitleFile {
     pub title: Option<String>,
     /// Label shown with every result of simulated recordings.
     pub simulated: Option<String>,
+    /// Remark on the campaign, shown with its results.
+    pub note: Option<String>,
 }
 
 /// `[rig]`

@@ -12,6 +12,9 @@ pub const CAMPAIGN_FILE: &str = "campaign.toml";
 /// Name of the store in a campaign directory.
 pub const STORE_FILE: &str = "results.sqlite";
 
+/// Name of the file in a campaign directory that keeps what changes of the page replaced.
+pub const UNDO_FILE: &str = "undo.json";
+
 /// What a campaign measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CampaignKind {

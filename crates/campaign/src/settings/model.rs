@@ -26,6 +26,8 @@ pub struct Campaign {
     pub title: String,
     /// Label shown with every result when the recordings are simulated.
     pub simulated: Option<String>,
+    /// Remark on the campaign.
+    pub note: Option<String>,
     /// How recordings are read.
     pub files: FilePlan,
     /// Column of specimens.csv or impacts.csv by which results are grouped.

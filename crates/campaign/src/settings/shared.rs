@@ -2,7 +2,7 @@
 
 use crate::settings::file::{FilesFile, SummaryFile, TitleFile};
 use crate::settings::files::{check_group, check_placeholders, file_plan};
-use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind, STORE_FILE};
+use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind, STORE_FILE, UNDO_FILE};
 use crate::settings::model::{Campaign, ChannelPlan};
 use crate::settings::tables::{read_impacts, read_specimens};
 use std::path::Path;
@@ -12,11 +12,12 @@ use windfall_files::text::toml_source::TomlSource;
 use windfall_files::write_file::sweep;
 
 /// Files of a campaign that no result may replace, whether they are there or not.
-const OWN_FILES: [&str; 6] = [
+const OWN_FILES: [&str; 7] = [
     CAMPAIGN_FILE,
     "specimens.csv",
     "impacts.csv",
     STORE_FILE,
+    UNDO_FILE,
     "results.sqlite-journal",
     "results.sqlite-wal",
 ];
@@ -69,6 +70,7 @@ pub fn read_shared(
         kind,
         title: title.unwrap_or_else(|| directory.display().to_string()),
         simulated: titles.simulated.clone(),
+        note: titles.note.clone(),
         files,
         group: group.map(|group| group.get_ref().clone()),
         specimens,

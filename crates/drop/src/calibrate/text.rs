@@ -17,7 +17,7 @@ const LISTED: usize = 24;
 
 /// A calibration for people.
 pub fn text_of_calibration(outcome: &CalibrateOutcome) -> String {
-    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
+    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref(), None);
     let line = format!("law: {}, free: {}", outcome.law, outcome.free.join(", "));
     let _ = writeln!(text, "{}", paragraph(&line, 2));
     let start = match outcome.start.rule.is_empty() {

@@ -96,10 +96,17 @@ pub fn header_of(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// First lines of results: the campaign, and that its recordings are simulated.
-pub fn title_lines(campaign: &str, simulated: Option<&str>) -> String {
+/// First lines of results: the campaign, that its recordings are simulated, a remark on it.
+pub fn title_lines(campaign: &str, simulated: Option<&str>, note: Option<&str>) -> String {
     let label = simulated.map(|label| format!("SIMULATED recordings: {label}"));
-    let lines = [Some(campaign), label.as_deref()].into_iter().flatten();
+    let note = note.map(|note| {
+        format!(
+            "Note: {}",
+            note.split_whitespace().collect::<Vec<_>>().join(" ")
+        )
+    });
+    let lines = [Some(campaign), label.as_deref(), note.as_deref()];
+    let lines = lines.into_iter().flatten();
     lines.map(|line| paragraph(line, 2) + "\n").collect()
 }
 

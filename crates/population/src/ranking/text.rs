@@ -13,7 +13,7 @@ const HEADER: &str = "law,delta_aicc,delta_bic,first_share,specimens_first,predi
 
 /// The comparison as text for a terminal.
 pub fn text_of_laws(outcome: &LawsOutcome) -> String {
-    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref());
+    let mut text = title_lines(&outcome.campaign, outcome.simulated.as_deref(), None);
     let _ = writeln!(
         text,
         "{} laws on {} impacts of {} velocity level{}, each impact with parameters of its own:\n",

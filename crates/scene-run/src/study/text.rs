@@ -195,6 +195,7 @@ pub fn write_page(outcome: &StudyOutcome, out: &Path) -> Result<Vec<PathBuf>, Er
         title: outcome.title.clone(),
         made: format!("windfall {}, {}", outcome.made[0], outcome.made[1]),
         simulated: None,
+        note: None,
         findings: outcome.findings.clone(),
         // A failed variant is a finding.
         failed: Vec::new(),

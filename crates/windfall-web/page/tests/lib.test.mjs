@@ -11,6 +11,9 @@ const { filledIn, namesColumn, placeholders } = await load("./src/lib/placeholde
 const { entryOf, linksOf, whyNot } = await load("./src/lib/kinds.ts");
 const { firstGuess } = await load("./src/lib/surface.ts");
 const { changes, difference } = await load("./src/lib/diff.ts");
+const { listOf, listText, rangeOf, rangeText } = await load("./src/lib/held.ts");
+const { rangesOf, rangesText } = await load("./src/lib/table.ts");
+const { responseOf, responseText } = await load("./src/lib/surface.ts");
 const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts");
 
 /** With plain spaces and minus, so that the expectations can be read. */
@@ -169,4 +172,35 @@ test("a surface begins with what its rows can tell", () => {
   // Rows with empty cells tell nothing.
   const gaps = squares.map(([a, b, y], row) => [a, b, row < 2 ? y : ""]);
   assert.equal(firstGuess(table(["a", "b", "y"], gaps)).factors.length, 0);
+});
+
+test("what an address holds is what was put into it", () => {
+  for (const list of [[], ["hertz"], ["power-law(n=1, k=2)", "a;b", "100 %", "%3B"]]) {
+    assert.deepEqual(listOf(listText(list) ?? undefined), list);
+  }
+  assert.deepEqual(rangeOf(rangeText({ min: -0.0123, max: 4e-7 })), { min: -0.0123, max: 4e-7 });
+  for (const text of [undefined, "", "1", "2..1", "1..1", "a..b", "1..2..3", "..2", "1..Infinity"]) {
+    assert.equal(rangeOf(text), null, text);
+  }
+  const ranges = { k: { low: 1, high: null }, "impacts.csv a:b": { low: null, high: -2.5 } };
+  assert.deepEqual(rangesOf(rangesText(ranges)), ranges);
+  const models = ["linear", "quadratic"];
+  for (const goal of [{ wanted: "", target: "", low: "", high: "" }, { wanted: "target", target: "11", low: "", high: "12" }]) {
+    for (const [model, terms] of [["linear", ""], ["", "A + B^2"]]) {
+      const response = { name: "force_N", model, terms, goal };
+      assert.deepEqual(responseOf(responseText(response), models), response);
+    }
+  }
+});
+
+test("differences of long texts are found between their common ends", () => {
+  const lines = Array.from({ length: 200_000 }, (_, i) => `row ${i}`);
+  const other = lines.with(100_000, "another");
+  const found = difference(lines.join("\n"), other.join("\n"));
+  assert.equal(found.length, 200_001);
+  assert.deepEqual(
+    found.filter(({ sign }) => sign !== " "),
+    [{ sign: "-", text: "row 100000" }, { sign: "+", text: "another" }],
+  );
+  assert.deepEqual(difference("a\na", "a"), [{ sign: " ", text: "a" }, { sign: "-", text: "a" }]);
 });

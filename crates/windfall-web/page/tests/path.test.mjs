@@ -246,7 +246,7 @@ test("an impact is refitted with other laws and options", async () => {
   await page.getByLabel("Weights").selectOption("inverse-mean");
   await page.getByLabel("The same on the command line").getByText("inverse-mean").waitFor();
   await inspect("impact-laws");
-  await page.getByRole("button", { name: "Undo" }).last().click();
+  await page.getByRole("button", { name: "Undo", exact: true }).last().click();
   await laws.getByRole("columnheader", { name: /power-law/ }).waitFor({ state: "detached" });
   await inspect("impact");
 });
@@ -302,7 +302,7 @@ test("the window goes by keys too, is saved, and found by the command line", asy
   await title("Impact specimen-02");
   await handle.waitFor();
   assert.equal(await handle.getAttribute("aria-valuenow"), unsaved);
-  await page.getByRole("button", { name: "Undo" }).first().click();
+  await page.getByRole("button", { name: "Undo", exact: true }).first().click();
 });
 
 test("an impact is left out with a reason, and counts again", async () => {
@@ -331,7 +331,7 @@ test("a window without a contact is told, and nothing breaks", async () => {
   });
   const before = await end.inputValue();
   await page.getByRole("button", { name: "Whole", exact: true }).click();
-  await page.getByRole("button", { name: "Undo" }).first().click();
+  await page.getByRole("button", { name: "Undo", exact: true }).first().click();
   await end.fill("1");
   const answered = page.waitForResponse("**/refit");
   answer();
@@ -342,7 +342,7 @@ test("a window without a contact is told, and nothing breaks", async () => {
   assert.equal(await end.inputValue(), "1");
   await end.press("Enter");
   await page.getByRole("alert").getByText("Not fitted").waitFor();
-  await page.getByRole("button", { name: "Undo" }).first().click();
+  await page.getByRole("button", { name: "Undo", exact: true }).first().click();
   await page.getByRole("alert").getByText("Not fitted").waitFor({ state: "detached" });
 });
 

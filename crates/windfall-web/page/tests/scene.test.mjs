@@ -139,6 +139,28 @@ test("it starts at the end, is scrubbed by keys, and what is drawn changes", asy
   assert.notDeepEqual(await stage().screenshot(), last);
 });
 
+test("time, fruit and camera are in the address, and come back", async () => {
+  await stage().focus();
+  await page.keyboard.press("ArrowLeft");
+  const held = () => page.evaluate(() => Object.fromEntries(new URLSearchParams(location.hash.split("?")[1])));
+  await page.waitForFunction(() => location.hash.includes("camera="));
+  const before = await held();
+  assert.ok(Math.abs(Number(before.time) - (await now())) < 1e-3, before.time);
+  await page.reload();
+  await page.waitForFunction(() => document.querySelector(".stage canvas")?.width > 300);
+  await page.waitForTimeout(1000);
+  assert.deepEqual(await held(), before);
+  assert.ok(Math.abs((await now()) - Number(before.time)) < 1e-3);
+  // Another fruit and time, as a link has them.
+  const to = (await page.evaluate(() => location.hash)).split("?")[0];
+  await visit(page, `${to}?time=1&fruit=5`);
+  await heading("Fruit 5").waitFor();
+  assert.equal(await now(), 1);
+  await visit(page, `${to}?time=0.22&fruit=900`);
+  await page.getByText("which was left out: fruit 900").waitFor();
+  await page.getByRole("button", { name: "Close this message" }).click();
+});
+
 test("it plays at the speed asked for, and pauses", async () => {
   await slider().focus();
   await page.keyboard.press("Home");

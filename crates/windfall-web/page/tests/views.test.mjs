@@ -317,6 +317,21 @@ test("surfaces: the optimum is a line, and sliders turn through it", async () =>
   await inspect("surface");
 });
 
+test("factors, goals and sliders of a surface are in the address, and come back", async () => {
+  const sliders = () => page.locator(".sliders input").evaluateAll((all) => all.map((own) => own.value));
+  await page.waitForTimeout(400);
+  const [before, hash] = [await sliders(), await page.evaluate(() => location.hash)];
+  const held = Object.fromEntries(new URLSearchParams(hash.split("?")[1]));
+  assert.equal(held.table, "tables/runs.csv");
+  assert.match(held.responses, /^force_N~.*~target~12~~;interval_ms~.*~target~300~~$/);
+  await page.reload();
+  await page.getByText("The optimum is one of many.").waitFor();
+  await page.getByRole("img", { name: /^Contours of force_N/ }).waitFor();
+  await page.waitForTimeout(400);
+  assert.deepEqual(await sliders(), before);
+  assert.equal(await page.evaluate(() => location.hash), hash);
+});
+
 test("a goal that cannot be is told beside it", async () => {
   const own = page.getByRole("group", { name: "Response 1" });
   await own.getByRole("textbox", { name: "Target" }).fill("1e9");

@@ -1,19 +1,20 @@
 //! Changes to a campaign's files; each names the version it is based on.
 
 use crate::api::campaigns::with_version;
-use crate::app::App;
-use crate::described::ChangeProblems;
-use crate::given::{Given, Version};
+use crate::app::{Answer, App};
+use crate::described::{ChangeProblems, QuestionProblems};
+use crate::given::{Asked, Given, Version};
 use crate::problem::Problem;
 use axum::extract::{Path, State};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 use windfall_workspace::campaign_view::CampaignView;
 use windfall_workspace::edit_campaign::{
-    Change, ChannelsChange, NewImpact, OptionsChange, change_campaign,
+    Change, ChannelsChange, NewImpact, OptionsChange, change_campaign, undo_change,
 };
+use windfall_workspace::undo::{FileBeside, Way, beside};
 
 /// The whole of campaign.toml.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -46,6 +47,33 @@ pub(crate) struct ExclusionGiven {
     /// Why; what there is stays where this is blank.
     #[serde(default)]
     note: String,
+}
+
+/// A note; a blank one takes away what is there.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct NoteGiven {
+    /// Id of the impact that it is on; the campaign if left out.
+    impact: Option<String>,
+    /// The note.
+    note: String,
+}
+
+/// A way through the changes.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct UndoGiven {
+    /// Whether the newest change is undone, or the one done again that was undone last.
+    way: Way,
+}
+
+/// A way through the changes.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(crate) struct WayAsked {
+    /// Which change: the newest, or the one that was undone last.
+    #[param(example = "undo")]
+    way: Way,
 }
 
 /// Options of the fit; those left out are unchanged.
@@ -151,6 +179,65 @@ pub(crate) async fn exclusion(
         note: given.note,
     };
     changed(app, id, version, change).await
+}
+
+/// Sets the note on an impact, whether it counts or not, or the one on the campaign.
+#[utoipa::path(
+    put, path = "/api/campaigns/{id}/note", request_body = NoteGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = CampaignView), ChangeProblems))]
+pub(crate) async fn note(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<NoteGiven>,
+) -> Result<Response, Problem> {
+    let mut unusual = given.note.chars().filter(|c| c.is_control());
+    let change = match given.impact {
+        Some(_) if unusual.next().is_some() => {
+            return Err(Problem::request("a note on an impact is one line"));
+        }
+        None if unusual.any(|c| c != '\n') => {
+            return Err(Problem::request("a note consists of lines of text"));
+        }
+        Some(impact) => Change::Note {
+            impact,
+            note: given.note,
+        },
+        None => Change::CampaignNote(given.note),
+    };
+    changed(app, id, version, change).await
+}
+
+/// Undoes the newest change that was made here, or does the one again that was undone last.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/undo", request_body = UndoGiven,
+    params(("id" = String, Path, example = "bench"), ("If-Match" = String, Header, example = "*")),
+    responses((status = 200, body = CampaignView), ChangeProblems))]
+pub(crate) async fn undo(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Version(version): Version,
+    Given(given): Given<UndoGiven>,
+) -> Result<Response, Problem> {
+    let view = app.on_campaign(id, move |_, directory| {
+        undo_change(directory, &version, given.way)
+    });
+    Ok(with_version(view.await?).into_response())
+}
+
+/// The files of the newest change as they are, and as undoing it would make them.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/undo",
+    params(("id" = String, Path, example = "bench"), WayAsked),
+    responses((status = 200, body = Vec<FileBeside>), QuestionProblems))]
+pub(crate) async fn undone(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Asked(asked): Asked<WayAsked>,
+) -> Answer<Vec<FileBeside>> {
+    app.answer(id, move |_, directory| beside(directory, asked.way))
+        .await
 }
 
 /// Sets options of the fit.

@@ -1,7 +1,7 @@
 //! Jobs: fits, comparisons of laws, populations, calibrations, reports.
 
-use crate::app::{Answer, App};
-use crate::described::RequestProblems;
+use crate::app::{Answer, App, Told};
+use crate::described::{QuestionProblems, RequestProblems};
 use crate::given::Given;
 use crate::job::{Job, JobView, JobWork, ReportFiles, Work};
 use crate::problem::Problem;
@@ -9,7 +9,7 @@ use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 use utoipa::ToSchema;
@@ -24,6 +24,7 @@ use windfall_report::run::{ReportRequest, report_campaign};
 use windfall_report::stored_card::CARD_FILE;
 use windfall_workspace::campaign_view::{check_work, name_of};
 use windfall_workspace::equal_command::command_of_fit;
+use windfall_workspace::kept_work::{KEPT, keep_result, kept_results, made_of};
 use windfall_workspace::results_table::write_results_table;
 use windfall_workspace::rig_form::check_rig_given;
 
@@ -163,8 +164,56 @@ fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
         }
     }
     let ending = Ending(job);
-    job.end(given.run(directory, job), |error| app.told(error));
+    let work = given.work.name();
+    // What the files say when it begins: a change meanwhile makes the result outdated.
+    let made_of = match KEPT.contains(&work) {
+        true => made_of(&directory).ok(),
+        false => None,
+    };
+    let result = given.run(directory.clone(), job);
+    let done = result.is_ok();
+    job.end(result, |error| app.told(error));
     drop(ending);
+    // The result is shown whether it can be kept or not: a store may be read-only.
+    if let (Some(made_of), true) = (made_of, done) {
+        let shown = app.tell(&job.view()).map(Told::into_json).ok();
+        let shown = shown.and_then(|text| serde_json::from_str(&text).ok());
+        let _ = shown.map(|shown| keep_result(&directory, work, made_of, shown));
+    }
+}
+
+/// A result that is kept in the store of a campaign.
+#[derive(Debug, Serialize, ToSchema)]
+pub(crate) struct KeptWork {
+    /// When it was calculated; UTC.
+    time: String,
+    /// Whether the campaign has changed since.
+    stale: bool,
+    /// The work with its result.
+    #[schema(value_type = JobView)]
+    job: serde_json::Value,
+}
+
+/// The newest comparison of laws, population and calibration of a campaign, as they are kept in
+/// its store.
+#[utoipa::path(
+    get, path = "/api/campaigns/{id}/kept", params(("id" = String, Path, example = "bench")),
+    responses((status = 200, body = Vec<KeptWork>), QuestionProblems))]
+pub(crate) async fn kept(State(app): State<App>, Path(id): Path<String>) -> Answer<Vec<KeptWork>> {
+    app.answer(id, |_, directory| {
+        let kept = kept_results(directory)?;
+        let now = match kept.is_empty() {
+            true => None,
+            false => Some(made_of(directory)?),
+        };
+        let works = kept.into_iter().map(|own| KeptWork {
+            stale: Some(&own.made_of) != now.as_ref(),
+            time: own.time,
+            job: own.shown,
+        });
+        Ok(works.collect())
+    })
+    .await
 }
 
 /// All jobs since the server was started.

@@ -15,11 +15,13 @@ import type {
   JobGiven,
   JobView,
   NewCampaign,
+  NoteGiven,
   OptionsGiven,
   Problem,
   Refit,
   RegressGiven,
   SurfaceGiven,
+  Way,
   WindowGiven,
 } from "./types";
 
@@ -115,6 +117,14 @@ export const api = {
     call("PUT /api/campaigns/{id}/window", [id], { body, version }),
   saveExclusion: (id: string, version: string, body: ExclusionGiven) =>
     call("PUT /api/campaigns/{id}/exclusion", [id], { body, version }),
+  /** Without an impact: the note on the campaign. */
+  saveNote: (id: string, version: string, body: NoteGiven) =>
+    call("PUT /api/campaigns/{id}/note", [id], { body, version }),
+  undo: (id: string, version: string, way: Way) =>
+    call("POST /api/campaigns/{id}/undo", [id], { body: { way }, version }),
+  /** Files of the change that would be undone, as they are and as they were. */
+  undone: (id: string, way: Way) => call("GET /api/campaigns/{id}/undo", [id], { query: { way } }),
+  kept: (id: string) => call("GET /api/campaigns/{id}/kept", [id]),
   saveOptions: (id: string, version: string, body: OptionsGiven) =>
     call("PUT /api/campaigns/{id}/options", [id], { body, version }),
   saveRig: (id: string, version: string, keys: Record<string, string>) =>

@@ -7,7 +7,23 @@ interface DiffLine {
 
 /** Turns `before` into `after` with as few changed lines as possible. */
 export function difference(before: string, after: string): DiffLine[] {
-  const [old, young] = [before.split("\n"), after.split("\n")];
+  const [all, next] = [before.split("\n"), after.split("\n")];
+  // Long texts mostly agree: only what lies between their common ends is compared.
+  const most = Math.min(all.length, next.length);
+  let head = 0;
+  while (head < most && all[head] === next[head]) head++;
+  let tail = 0;
+  while (tail < most - head && all.at(-1 - tail) === next.at(-1 - tail)) tail++;
+  const same = (lines: string[]) => lines.map((text): DiffLine => ({ sign: " ", text }));
+  const between = (lines: string[]) => lines.slice(head, lines.length - tail);
+  return [
+    ...same(all.slice(0, head)),
+    ...differenceOf(between(all), between(next)),
+    ...same(all.slice(all.length - tail)),
+  ];
+}
+
+function differenceOf(old: string[], young: string[]): DiffLine[] {
   // common[i][j]: length of the longest common part of old[i..] and young[j..].
   const common = Array.from({ length: old.length + 1 }, () => new Uint32Array(young.length + 1));
   for (let i = old.length - 1; i >= 0; i--) {

@@ -10,7 +10,7 @@ import type { About, CampaignView, JobView, JobGiven, StoredResults } from "../a
 
 interface Notice {
   key: number;
-  kind: "error" | "done";
+  kind: "error" | "done" | "note";
   text: string;
 }
 
@@ -37,6 +37,11 @@ class Notices {
   done(text: string): void {
     const key = this.#add("done", text);
     setTimeout(() => this.drop(key), 6000);
+  }
+
+  /** Tells something that is no failure, until it is closed. */
+  note(text: string): void {
+    this.#add("note", text);
   }
 
   drop(key: number): void {

@@ -67,6 +67,30 @@ export interface Goal {
 
 export const noGoal = (): Goal => ({ wanted: "", target: "", low: "", high: "" });
 
+/** A response of a surface, as it is asked for. */
+export interface Response {
+  name: string;
+  /** "linear", "quadratic", …, or "" for `terms`. */
+  model: string;
+  terms: string;
+  goal: Goal;
+}
+
+/** "k~quadratic", or "k~quadratic~target~11~~" with what is wanted of it. */
+export function responseText({ name, model, terms, goal }: Response): string {
+  const wish = goal.wanted === "" ? [] : [goal.wanted, goal.target, goal.low, goal.high];
+  return [name, model === "" ? terms : model, ...wish].join("~");
+}
+
+/** The response of such a text. */
+export function responseOf(text: string, models: string[]): Response {
+  const [name = "", model = "", wanted = "", target = "", low = "", high = ""] = text.split("~");
+  const known = models.includes(model);
+  const wishes: Goal["wanted"][] = ["target", "maximum", "minimum", "range"];
+  const goal = { wanted: wishes.find((each) => each === wanted) ?? ("" as const), target, low, high };
+  return { name, model: known ? model : "", terms: known ? "" : model, goal };
+}
+
 /** "force_N = target 11.3, low 9"; `null` where nothing is wanted, or not yet said. */
 export function goalText(response: string, { wanted, target, low, high }: Goal): string | null {
   if (wanted === "" || (wanted === "target" && target.trim() === "")) return null;

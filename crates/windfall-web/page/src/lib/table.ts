@@ -71,9 +71,15 @@ export function resultTable(campaign: CampaignView, results: StoredResults | nul
   }
   const specimens = joined(campaign.specimens, "specimens.csv");
   const impacts = joined(campaign.impacts, "impacts.csv");
-  const rows = items.map((item, place) => {
+  const several = new Set(items.map((item) => item.law)).size > 1;
+  const seen = new Map<string, number>();
+  const rows = items.map((item) => {
+    // Rows that come in between leave the keys of the others as they are.
+    const name = several ? `${item.id} ${item.law}` : item.id;
+    const before = seen.get(name) ?? 0;
+    seen.set(name, before + 1);
     const row: Row = {
-      key: `${place} ${item.id}`,
+      key: before === 0 ? name : `${name} ${before + 1}`,
       id: item.id,
       group: item.group ?? "",
       law: item.law,
@@ -152,6 +158,9 @@ function joined(table: TableView, from: "specimens.csv" | "impacts.csv") {
   };
 }
 
+/** Whether a cell of the column `exclude` leaves an impact out. */
+export const excludes = (cell: string): boolean => !["", "0", "no", "false", "n"].includes(cell.trim().toLowerCase());
+
 /** Label of a column with its unit. */
 export const heading = (of: Column) => (of.unit === "" ? of.label : `${of.label} (${unitText(of.unit)})`);
 
@@ -187,6 +196,18 @@ export interface Filter {
 }
 
 export const noFilter = (): Filter => ({ text: "", groups: [], laws: [], ranges: {} });
+
+/** "key:0.1..0.5" for each range; ends that are open are left out. */
+export const rangesText = (ranges: Filter["ranges"]): string[] =>
+  Object.entries(ranges).map(([key, { low, high }]) => `${key}:${low ?? ""}..${high ?? ""}`);
+
+export function rangesOf(texts: string[]): Filter["ranges"] {
+  const parts = texts.flatMap((text) => {
+    const [, key, low, high] = /^(.*):([^:]*?)\.\.([^:]*)$/s.exec(text) ?? [];
+    return key === undefined ? [] : [[key, { low: numberOf(low ?? ""), high: numberOf(high ?? "") }] as const];
+  });
+  return Object.fromEntries(parts);
+}
 
 /** Rows that a filter lets through, in their order. */
 export function filtered(rows: Row[], filter: Filter): Row[] {

@@ -283,6 +283,21 @@ export class Player {
     if (this.#frame) this.show(this.#frame, null, this.#time);
   }
 
+  /** Where the camera is and what it looks at; `null` as the scene begins. m */
+  pose(): number[] | null {
+    if (!this.#turned && this.#from.every((angle, k) => angle === FROM[k])) return null;
+    return [...this.#camera.position.toArray(), ...this.#controls.target.toArray()];
+  }
+
+  /** Takes a view that `pose` told. */
+  take(pose: number[]): void {
+    this.#turned = true;
+    this.#camera.position.fromArray(pose);
+    this.#controls.target.fromArray(pose, 3);
+    this.#controls.update();
+    this.draw();
+  }
+
   /** Turns the view by angles (rad) and zooms by a factor. */
   turn(azimuth: number, elevation: number, nearer = 1): void {
     this.#turned = true;
