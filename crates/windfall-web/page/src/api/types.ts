@@ -361,7 +361,7 @@ export interface Refit {
   weights?: string | null; noise?: string | null; intervals?: string | null; onset?: string | null;
   initial_velocity?: string | null; displacement_offset?: string | null; end?: string | null; series?: boolean;
 }
-export type RegressAnswer = AnyRegressOutcome & { command: string; };
+export type RegressAnswer = AnyRegressOutcome & { units: TermUnits; command: string; };
 export interface RegressGiven {
   table: string; response: string; terms: string; random?: string[]; select?: boolean;
 }
@@ -433,7 +433,9 @@ export interface StepOutcome {
 }
 export interface StoredResults { outcome: AnyOutcome | null; pending: number; time: string | null; }
 export interface SumOfSquares { ss: number | null; df: number | null; }
-export type SurfaceAnswer = SurfaceOutcome & { maps: ResponseMap[]; command: string; };
+export type SurfaceAnswer = SurfaceOutcome & {
+  maps: ResponseMap[]; factor_units: string[]; units: TermUnits[]; command: string;
+};
 export interface SurfaceGiven {
   table: string; factors: string[]; responses: ResponseGiven[]; goals?: string[]; hold?: string[];
   along?: string | null; members?: number; grid?: string | null; grid_points?: number;
@@ -461,6 +463,7 @@ export interface TermOutcome {
   term: string; estimate: number; se: number | null; t: number | null; p: number | null; low: number | null;
   high: number | null; df: number | null;
 }
+export interface TermUnits { response: string; terms: string[]; }
 export interface TestOutcome { test: string; statistic: number; p: number; }
 export interface TextGiven { text: string; }
 export interface TrendOutcome {
