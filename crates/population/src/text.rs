@@ -15,10 +15,6 @@ fn columns(names: &str) -> Vec<String> {
     names.split(',').map(str::to_owned).collect()
 }
 
-fn end(value: Option<f64>, factor: f64) -> String {
-    value.map_or_else(|| "-".to_owned(), |v| plain(v * factor))
-}
-
 fn cells(range: &RangeOutcome, factor: f64) -> [String; 3] {
     let [value, low, high] =
         [Some(range.value), range.low, range.high].map(|v| v.map(|v| v * factor));

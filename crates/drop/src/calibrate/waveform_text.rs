@@ -3,7 +3,6 @@
 use crate::calibrate::waveform_outcome::{WaveformOutcome, WaveformParameter};
 use std::fmt::Write;
 use windfall_files::text::number::{beside_sd, plain, unit_text, value_and_sd};
-use windfall_files::text::statistic::number;
 use windfall_files::text::table::{header_of, page_tables};
 use windfall_measure::measured::MeasuredValue;
 
