@@ -382,6 +382,7 @@ fn extremes(stretch: &[(f64, f64)]) -> [(f64, f64); 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panel::Mark;
 
     /// A peak of one sample among many is drawn: at the top of the panel.
     #[test]
