@@ -132,7 +132,7 @@ mod tests {
             &covariance,
             &[("k", 100.0, "N/m", true), ("onset", 0.0, "s", false)],
         );
-        assert!(words.starts_with("k +1.99 %, onset +2.98e0 s"), "{words}");
+        assert!(words.starts_with("k +1.99 %, onset +2.98 s"), "{words}");
     }
 
     #[test]
