@@ -4,6 +4,7 @@ use crate::law_card::{CardCovariate, CardPopulation, LawCard};
 use std::fmt::Write;
 use windfall_files::error::Error;
 use windfall_files::table::write::{csv_text, number_cell};
+use windfall_files::text::number::{beside_sd, interval, unit_text};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::table_text;
 
@@ -23,12 +24,15 @@ pub fn text_of_card(card: &LawCard) -> String {
     let rows = card.parameters.iter().map(|(name, parameter)| {
         vec![
             name.clone(),
-            number(parameter.value),
+            match parameter.sd {
+                Some(sd) => beside_sd(parameter.value, sd),
+                None => number(parameter.value),
+            },
             parameter.sd.map_or_else(|| "held".to_owned(), number),
-            parameter.interval.map_or_else(String::new, |[low, high]| {
-                format!("{} to {}", number(low), number(high))
-            }),
-            parameter.unit.clone(),
+            parameter
+                .interval
+                .map_or_else(String::new, |[low, high]| interval(low, high)),
+            unit_text(&parameter.unit),
         ]
     });
     text.push_str(&table_text(&header.map(str::to_owned), rows, &[0, 4]));
@@ -156,7 +160,7 @@ pub fn csv_of_card(card: &LawCard) -> Result<String, Error> {
             number_cell(parameter.sd),
             number_cell(parameter.interval.map(|[low, _]| low)),
             number_cell(parameter.interval.map(|[_, high]| high)),
-            parameter.unit.clone(),
+            unit_text(&parameter.unit),
         ]
     });
     csv_text(&header.map(str::to_owned), rows)

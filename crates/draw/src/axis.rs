@@ -1,5 +1,7 @@
 //! Axes of figures: round ticks and their labels.
 
+use windfall_files::text::number::raised;
+
 /// Powers of ten beyond which an axis carries a factor in its title.
 const PLAIN_POWERS: std::ops::RangeInclusive<i32> = -2..=4;
 
@@ -40,16 +42,44 @@ pub fn axis(low: f64, high: f64, count: usize) -> Axis {
             step = round_step(0.35 * step);
         }
     }
-    let ticks: Vec<f64> = (first(step)..=last(step))
-        .map(|i| i as f64 * step)
-        .collect();
+    of_step((low, high), step, 0)
+}
+
+/// An axis over the same range with ticks as far apart as three allow, for labels that stand in
+/// each other's way otherwise: 1, 2, 2.5, 3, 4 or 5 times a power of ten.
+pub(crate) fn sparse(axis: &Axis) -> Axis {
+    let (low, high) = (axis.low, axis.high);
+    let power = 10_f64.powf(((high - low) / 2.0).log10().floor());
+    let steps = [
+        (5.0, 0),
+        (4.0, 0),
+        (3.0, 0),
+        (2.5, 1),
+        (2.0, 0),
+        (1.0, 0),
+        (0.5, 0),
+        (0.4, 0),
+    ];
+    let steps = steps.map(|(step, more)| of_step((low, high), step * power, more));
+    let enough = |own: &&Axis| own.ticks.len() as i64 >= FEWEST;
+    steps.iter().find(enough).unwrap_or(axis).clone()
+}
+
+/// An axis with ticks at the multiples of a step.
+///
+/// * `more`: decimals beyond the first digit of the step
+fn of_step((low, high): (f64, f64), step: f64, more: i32) -> Axis {
+    let first = (low / step - ROUNDING).ceil() as i64;
+    let last = (high / step + ROUNDING).floor() as i64;
+    let ticks: Vec<f64> = (first..=last).map(|i| i as f64 * step).collect();
     let largest = low.abs().max(high.abs());
     let magnitude = largest.log10().floor() as i32;
     let power = match PLAIN_POWERS.contains(&magnitude) {
         true => 0,
         false => magnitude,
     };
-    let decimals = (power - step.log10().floor() as i32).max(0) as usize;
+    let decimals =
+        (power - (step * (1.0 + ROUNDING)).log10().floor() as i32 + more).max(0) as usize;
     let labels = ticks
         .iter()
         .map(|tick| label(tick / 10_f64.powi(power), decimals))
@@ -77,7 +107,7 @@ fn label(value: f64, decimals: usize) -> String {
 pub fn unit_label(unit: &str, power: i32) -> String {
     let factor = match power {
         0 => String::new(),
-        power => format!("10{}", superscript(power)),
+        power => format!("10{}", raised(&power.to_string())),
     };
     match (unit, factor.as_str()) {
         ("", "") => String::new(),
@@ -85,18 +115,6 @@ pub fn unit_label(unit: &str, power: i32) -> String {
         (unit, "") => format!(" ({unit})"),
         (unit, factor) => format!(" ({factor} {unit})"),
     }
-}
-
-fn superscript(power: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    power
-        .to_string()
-        .chars()
-        .filter_map(|c| match c {
-            '-' => Some('⁻'),
-            digit => DIGITS.get(digit.to_digit(10)? as usize).copied(),
-        })
-        .collect()
 }
 
 fn widened(low: f64, high: f64) -> (f64, f64) {
@@ -137,6 +155,25 @@ mod tests {
         let found = axis(5.0, 5.0, 4);
         assert!(found.low < 5.0 && found.high > 5.0 && !found.ticks.is_empty());
         assert_eq!(unit_label("N", -6), " (10⁻⁶ N)");
+    }
+
+    /// Wherever the ends lie, three ticks are found, and about half of the range lies between two.
+    #[test]
+    fn closed_form_sparse_axes_have_three_ticks() {
+        for i in 0..500 {
+            let low = (f64::from(i) - 250.0) * 0.37;
+            for width in [0.013, 0.7, 1.01, 2.9, 49.0, 777.0] {
+                let dense = axis(low, low + width, 6);
+                let found = sparse(&dense);
+                assert!((3..=5).contains(&found.ticks.len()), "{found:?}");
+                assert!(found.ticks.len() <= dense.ticks.len());
+                let told = |(tick, label): (&f64, &String)| {
+                    let label: f64 = label.replace('\u{2212}', "-").parse().unwrap();
+                    (label * 10_f64.powi(found.power) - tick).abs() < 1e-9 * (tick.abs() + width)
+                };
+                assert!(found.ticks.iter().zip(&found.labels).all(told), "{found:?}");
+            }
+        }
     }
 
     #[test]

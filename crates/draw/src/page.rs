@@ -83,7 +83,7 @@ caption { text-align: left; padding-bottom: 0.3rem; font-weight: bold; }
 th, td { padding: 0.15rem 0.7rem 0.15rem 0; text-align: right; white-space: nowrap; vertical-align: top; }
 th:first-child, td:first-child { text-align: left; }
 thead th { border-bottom: 1px solid var(--figure-frame); }
-td.words { text-align: left; }
+th.words, td.words { text-align: left; }
 figure { margin: 1.5rem 0; }
 figure svg { display: block; max-width: 100%; height: auto; }
 figcaption { font-size: 0.85rem; margin-top: 0.4rem; }
@@ -224,22 +224,23 @@ fn section(section: &Section, (tables, figures): (usize, usize)) -> Markup {
 
 fn table_markup(table: &CaptionedTable, number: usize) -> Markup {
     let cells = &table.cells;
+    let class = |column: usize| (column > 0 && !is_of_numbers(cells, column)).then_some("words");
     html! {
         // Reached by the keyboard, so that a wide table can be scrolled without a mouse.
         div class="table" tabindex="0" role="region" aria-label=(table.caption) {
             table {
                 caption { "Table " (number) ". " (table.caption) }
-                thead { tr { @for heading in &cells.header { th scope="col" { (heading) } } } }
+                thead { tr { @for (index, heading) in cells.header.iter().enumerate() {
+                    th scope="col" class=[class(index)] { (heading) }
+                } } }
                 tbody {
                     @for row in &cells.rows {
                         tr {
                             @for (index, cell) in row.iter().enumerate() {
                                 @if index == 0 {
                                     th scope="row" { (cell) }
-                                } @else if cell.contains(|c: char| c.is_ascii_digit()) {
-                                    td { (cell) }
                                 } @else {
-                                    td class="words" { (cell) }
+                                    td class=[class(index)] { (cell) }
                                 }
                             }
                         }
@@ -250,9 +251,39 @@ fn table_markup(table: &CaptionedTable, number: usize) -> Markup {
     }
 }
 
+/// Whether every cell of a column is a number, with what belongs to it, or a dash.
+fn is_of_numbers(cells: &Cells, column: usize) -> bool {
+    let filled = |cell: &&String| !matches!(cell.as_str(), "" | "-");
+    let column = cells.rows.iter().filter_map(|row| row.get(column));
+    column.filter(filled).all(|cell| {
+        let digits = cell.trim_start_matches(['-', '\u{2212}', '+', '(', '<', '>', ' ']);
+        digits.starts_with(|c: char| c.is_ascii_digit())
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn closed_form_a_column_is_flush_on_one_side() {
+        let row = |cells: [&str; 4]| cells.map(str::to_owned).to_vec();
+        let table = CaptionedTable {
+            caption: "Options".to_owned(),
+            cells: Cells {
+                header: row(["option", "value", "k (N/m¹˙⁵)", "p"]),
+                rows: vec![
+                    row(["laws", "hertz", "746000 ± 1300", "< 0.001"]),
+                    row(["seed", "12", "-", "0.034"]),
+                ],
+            },
+        };
+        let page = table_markup(&table, 1).into_string();
+        // The column of words and numbers is one of words, heading and all.
+        assert_eq!(page.matches(r#"class="words""#).count(), 3, "{page}");
+        assert!(page.contains(r#"<td class="words">12</td>"#), "{page}");
+        assert!(page.contains("<td>&lt; 0.001</td>"), "{page}");
+    }
 
     /// What comes from files is words on the page, and nothing is fetched.
     #[test]

@@ -206,7 +206,8 @@ pub(crate) fn draw_within(drawing: &mut Drawing, panel: &Panel, frame: &Frame, l
     draw_marks(drawing, panel, frame, labels);
 }
 
-/// Named places. Where labels would cover each other, the first is shown; the data have all.
+/// Named places. Where labels would cover each other or other places, the first is shown; the data
+/// have all.
 fn draw_marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labels) {
     let (left, right, top) = (frame.within.left, frame.within.right(), frame.within.top);
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
@@ -254,12 +255,14 @@ fn draw_marks(drawing: &mut Drawing, panel: &Panel, frame: &Frame, labels: &Labe
             let ((_, y), _, ends) = place(*side);
             !covers((y, ends)) && !meets((y, ends))
         };
-        let side = [mark.side, other].into_iter().find(free);
-        let ((x, y), anchor, (from, to)) = place(side.unwrap_or(mark.side));
-        if !covers((y, (from, to))) {
-            drawing.text((x, y), anchor, labels.size, &mark.label);
-            taken.push((from, to, y));
-        }
+        let side = match [mark.side, other].into_iter().find(free) {
+            None if taken.is_empty() => mark.side,
+            None => continue,
+            Some(side) => side,
+        };
+        let ((x, y), anchor, (from, to)) = place(side);
+        drawing.text((x, y), anchor, labels.size, &mark.label);
+        taken.push((from, to, y));
     }
 }
 
@@ -379,6 +382,7 @@ fn extremes(stretch: &[(f64, f64)]) -> [(f64, f64); 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panel::Mark;
 
     /// A peak of one sample among many is drawn: at the top of the panel.
     #[test]
@@ -403,5 +407,61 @@ mod tests {
         assert!(drawn.len() <= MOST_POINTS);
         assert!(drawn.chunks(2).all(|own| own[1].0 == own[0].0 + 1.0));
         assert_eq!(thinned(&bars, true, MOST_POINTS).count(), 20_000);
+    }
+
+    /// Places that lie close together keep their rings, and only labels that cover none of them.
+    #[test]
+    fn closed_form_labels_cover_no_other_place() {
+        let marks = (0..12).map(|i| Mark {
+            label: format!("{}: 12.345 N", i + 1),
+            at: (100.0 * (1.0 - 0.6_f64.powi(i)), 40.0 * 0.5_f64.powi(i)),
+            side: Side::BelowRight,
+        });
+        let line = Series::new("force", Style::Line, vec![(0.0, 0.0), (110.0, 44.0)]);
+        let panel = Panel {
+            marks: marks.collect(),
+            ..Panel::new(("time", "ms"), ("force", "N"), vec![line])
+        };
+        let figure = crate::xy::Figure {
+            title: "drop".to_owned(),
+            panels: vec![panel],
+        };
+        let svg = crate::xy::svg_of_figure(&figure, &crate::theme::LIGHT);
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let number = |node: &roxmltree::Node, name: &str| -> f64 {
+            node.attribute(name).unwrap().parse().unwrap()
+        };
+        let named = |name: &'static str| {
+            let all = document.descendants();
+            all.filter(move |node| node.has_tag_name(name))
+                .collect::<Vec<_>>()
+        };
+        let rings: Vec<(f64, f64)> = named("circle")
+            .iter()
+            .map(|node| (number(node, "cx"), number(node, "cy")))
+            .collect();
+        assert_eq!(rings.len(), 12);
+        let text = |node: &roxmltree::Node| node.text().unwrap_or_default().to_owned();
+        let labels: Vec<_> = named("text")
+            .into_iter()
+            .filter(|node| text(node).ends_with(" N"))
+            .collect();
+        assert!((3..12).contains(&labels.len()), "{}", labels.len());
+        for label in labels {
+            let size = number(&label, "font-size");
+            let (x, y, length) = (
+                number(&label, "x"),
+                number(&label, "y"),
+                text_width(&text(&label), size),
+            );
+            let left = match label.attribute("text-anchor") {
+                Some("end") => x - length,
+                _ => x,
+            };
+            let inside = |(cx, cy): &(f64, f64)| {
+                (left..left + length).contains(cx) && (y - 0.7 * size..y).contains(cy)
+            };
+            assert!(!rings.iter().any(inside), "{}", text(&label));
+        }
     }
 }

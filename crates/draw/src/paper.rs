@@ -1,6 +1,6 @@
 //! Panels as a journal prints them: letters of one size, a grid that fits a width, one legend.
 
-use crate::axis::{Axis, unit_label};
+use crate::axis::{Axis, sparse, unit_label};
 use crate::frame::{Frame, Rectangle};
 use crate::grid_panel::{GridPanel, Scale, axis_of, inside};
 use crate::panel::Panel;
@@ -230,7 +230,10 @@ fn horizontal(own: &GridPanel, width: f64) -> Axis {
     };
     let try_ticks = |count: &usize| axis_of(&own.across, range, *count, 0.03);
     let mut tried = [6, 5, 4, 3].iter().map(try_ticks);
-    tried.find(fits).unwrap_or_else(|| try_ticks(&3))
+    tried.find(fits).unwrap_or_else(|| match own.across {
+        Scale::Names(_) => try_ticks(&3),
+        _ => sparse(&try_ticks(&3)),
+    })
 }
 
 /// Sizes that the panels of a row share; px.

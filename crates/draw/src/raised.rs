@@ -5,7 +5,7 @@ pub(crate) const RAISED_SIZE: f64 = 0.72;
 
 /// Characters above the line with those that they are raised from. Few fonts have
 /// all of them, and of different heights.
-pub(crate) const RAISED: [(char, char); 11] = [
+pub(crate) const RAISED: [(char, char); 12] = [
     ('⁰', '0'),
     ('¹', '1'),
     ('²', '2'),
@@ -17,6 +17,7 @@ pub(crate) const RAISED: [(char, char); 11] = [
     ('⁸', '8'),
     ('⁹', '9'),
     ('⁻', '\u{2212}'),
+    ('˙', '.'),
 ];
 
 /// Text in parts, each with whether it is raised: raised characters, and numbers

@@ -1,5 +1,7 @@
 //! Remarks on fits.
 
+use windfall_numerics::written::{plain, unit_text};
+
 /// A remark on one fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Finding {
@@ -109,7 +111,8 @@ pub enum Finding {
     },
     /// The residuals are much larger than the channel's own noise.
     #[error(
-        "the residuals of {quantity} are {ratio:.1} times its own noise ({noise:.3e}): the law does not describe the signal to its accuracy"
+        "the residuals of {quantity} are {ratio:.1} times its own noise ({}): the law does not describe the signal to its accuracy",
+        plain(*noise)
     )]
     Misfit {
         /// The quantity.
@@ -290,11 +293,11 @@ impl std::fmt::Display for Shown<'_> {
                 false => f.write_str(&text)?,
             }
         } else {
-            write!(f, "{value:.3e}")?;
+            f.write_str(&plain(value))?;
         }
         match unit {
             "" | "1" => Ok(()),
-            unit => write!(f, " {unit}"),
+            unit => write!(f, " {}", unit_text(unit)),
         }
     }
 }
@@ -327,9 +330,9 @@ mod tests {
         let cases = [
             (0.0, "0"),
             (-12.345_678, "-12.35"),
-            (394_931.0, "3.949e5"),
+            (394_931.0, "394931"),
             (39_493.1, "39493"),
-            (1e-9, "1.000e-9"),
+            (1e-9, "1.000·10⁻⁹"),
             (0.000_123_456, "0.0001235"),
             (100.0, "100"),
         ];

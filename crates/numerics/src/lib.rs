@@ -22,3 +22,4 @@ pub mod real_vector;
 pub mod root;
 pub mod runs;
 pub mod unit;
+pub mod written;

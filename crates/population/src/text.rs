@@ -6,7 +6,7 @@ use crate::outcome::{
 };
 use windfall_files::error::Error;
 use windfall_files::table::write::{csv_text, number_cell};
-use windfall_files::text::number::plain;
+use windfall_files::text::number::{beside_sd, plain, unit_text};
 use windfall_files::text::statistic::{number, probability};
 use windfall_files::text::table::{failures_list, findings_list, page_tables, paragraph};
 
@@ -15,16 +15,14 @@ fn columns(names: &str) -> Vec<String> {
     names.split(',').map(str::to_owned).collect()
 }
 
-fn end(value: Option<f64>, factor: f64) -> String {
-    value.map_or_else(|| "-".to_owned(), |v| plain(v * factor))
-}
-
 fn cells(range: &RangeOutcome, factor: f64) -> [String; 3] {
-    [
-        plain(range.value * factor),
-        end(range.low, factor),
-        end(range.high, factor),
-    ]
+    let [value, low, high] =
+        [Some(range.value), range.low, range.high].map(|v| v.map(|v| v * factor));
+    let width = high
+        .zip(low)
+        .map_or(f64::INFINITY, |(high, low)| high - low);
+    // A quarter of a 95 % interval is about a standard deviation.
+    [value, low, high].map(|own| own.map_or_else(|| "-".to_owned(), |v| beside_sd(v, 0.25 * width)))
 }
 
 /// A population as text, with the two-stage estimate next to each number.
@@ -82,7 +80,7 @@ fn spread_table(outcome: &PopulationOutcome) -> String {
         let (factor, unit) = deviations_shown(parameter);
         let median = match parameter.unit.as_str() {
             "1" => format!("median {}", parameter.name),
-            unit => format!("median {} ({unit})", parameter.name),
+            unit => format!("median {} ({})", parameter.name, unit_text(unit)),
         };
         let mut row = |name: String, own: &RangeOutcome, other: Option<&RangeOutcome>, f: f64| {
             let mut line = vec![name];

@@ -30,7 +30,7 @@ use windfall_draw::files::{NamedFigure, file_name};
 use windfall_draw::page::{CaptionedTable, Section};
 use windfall_draw::xy::Figure;
 use windfall_files::error::Error;
-use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::number::{interval, value_and_sd};
 use windfall_files::text::table::Cells;
 
 /// Quantities in the table of impacts.
@@ -177,7 +177,7 @@ fn impact_cells(impacts: &[&ImpactOutcome]) -> Cells {
             };
             row.push(value_and_sd(found.value, found.sd));
             row.push(match found.interval() {
-                Some((low, high)) => format!("{} to {}", plain(low), plain(high)),
+                Some((low, high)) => interval(low, high),
                 None => "-".to_owned(),
             });
         }

@@ -3,7 +3,7 @@
 use windfall_campaign::result::outcome::CampaignOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, KnownKind, MassPlan, RigPlan};
 use windfall_contact::law::EndRule;
-use windfall_files::text::number::plain;
+use windfall_files::text::number::{plain, unit_text, value_and_sd};
 use windfall_identify::fit::interval::IntervalMethod;
 use windfall_identify::fit::problem::{FitOptions, NoiseModel, Weighting};
 use windfall_identify::samples::Quantity;
@@ -70,7 +70,8 @@ fn rig(campaign: &ImpactCampaign, outcome: &CampaignOutcome) -> String {
 fn estimated(outcome: &CampaignOutcome) -> Option<String> {
     let parts = outcome.estimated.0.iter().map(|(name, own)| {
         let unit = if own.unit == "1" { "" } else { &own.unit };
-        let text = format!("{name} = {} ± {} {unit}", plain(own.value), plain(own.sd));
+        let value = value_and_sd(own.value, Some(own.sd));
+        let text = format!("{name} = {value} {}", unit_text(unit));
         format!("{} ({} impacts)", text.trim_end(), own.impacts)
     });
     let parts: Vec<String> = parts.collect();
@@ -182,7 +183,7 @@ fn given(campaign: &ImpactCampaign) -> Option<String> {
         Some(format!(
             "noise of {}, {sd} {}",
             quantity.name(),
-            quantity.unit()
+            unit_text(quantity.unit())
         ))
     }));
     (!told.is_empty()).then(|| format!("Given beside the recordings: {}.", told.join("; ")))

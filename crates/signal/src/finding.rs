@@ -2,6 +2,7 @@
 
 use crate::error::{Rounded, Times};
 use crate::filter::butterworth::Band;
+use windfall_numerics::written::plain;
 
 /// Something about the signals that a reader of the results must know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -41,8 +42,8 @@ pub enum Finding {
         to: f64,
     },
     #[error(
-        "channel '{channel}' is sampled irregularly: the interval departs by up to {jitter:.3e} s from its median of {interval:.3e} s, most at {} s; the recorded times are used as they are",
-        Rounded(*at)
+        "channel '{channel}' is sampled irregularly: the interval departs by up to {} s from its median of {} s, most at {} s; the recorded times are used as they are",
+        plain(*jitter), plain(*interval), Rounded(*at)
     )]
     IrregularSampling {
         channel: String,
@@ -124,7 +125,8 @@ pub enum Finding {
         offset_sd: f64,
     },
     #[error(
-        "no force channel: the contact window comes from the deceleration in '{channel}' and is known to about {resolution:.2e} s"
+        "no force channel: the contact window comes from the deceleration in '{channel}' and is known to about {} s",
+        plain(*resolution)
     )]
     WindowFromMotion { channel: String, resolution: f64 },
     #[error(
@@ -137,15 +139,15 @@ pub enum Finding {
         share: f64,
         cure: &'static str,
     },
-    #[error("the noise of '{channel}' cannot be measured; {floor:.3e} is assumed ({reason})")]
+    #[error("the noise of '{channel}' cannot be measured; {} is assumed ({reason})", plain(*floor))]
     NoiseAtFloor {
         channel: String,
         floor: f64,
         reason: &'static str,
     },
     #[error(
-        "channel '{channel}': the sample at {} s ({value:.4e}) does not fit the free motion around it and is left out",
-        Rounded(*time)
+        "channel '{channel}': the sample at {} s ({}) does not fit the free motion around it and is left out",
+        Rounded(*time), plain(*value)
     )]
     Glitch {
         channel: String,
@@ -153,8 +155,8 @@ pub enum Finding {
         value: f64,
     },
     #[error(
-        "channel '{channel}': {samples} single sample(s) far from those beside them, the first at {} s ({value:.4e}); the median of their neighbours is used instead. Look at plugs, cables and the converter",
-        Rounded(*time)
+        "channel '{channel}': {samples} single sample(s) far from those beside them, the first at {} s ({}); the median of their neighbours is used instead. Look at plugs, cables and the converter",
+        Rounded(*time), plain(*value)
     )]
     Spikes {
         channel: String,
@@ -163,8 +165,8 @@ pub enum Finding {
         value: f64,
     },
     #[error(
-        "channel '{channel}': {samples} single sample(s) far from those beside them, the first at {} s ({value:.4e}); they are used as they are, since pulses have few samples here and one may be a peak. If it is a wrong value, blank it, or give a range of time without it (from_s and to_s in impacts.csv)",
-        Rounded(*time)
+        "channel '{channel}': {samples} single sample(s) far from those beside them, the first at {} s ({}); they are used as they are, since pulses have few samples here and one may be a peak. If it is a wrong value, blank it, or give a range of time without it (from_s and to_s in impacts.csv)",
+        Rounded(*time), plain(*value)
     )]
     SpikesKept {
         channel: String,
@@ -255,7 +257,9 @@ pub enum Finding {
         peak_ratio_sd: f64,
     },
     #[error(
-        "the loop of force over displacement holds {area:.4e} J and the velocities tell {absorbed:.4e} J absorbed; check the calibrations of force and displacement, the delay between them, and the mass"
+        "the loop of force over displacement holds {} J and the velocities tell {} J absorbed; check the calibrations of force and displacement, the delay between them, and the mass",
+        plain(*area),
+        plain(*absorbed)
     )]
     EnergyMismatch { area: f64, absorbed: f64 },
     #[error(

@@ -10,3 +10,4 @@ pub mod reading;
 pub mod regress;
 pub mod rows;
 pub mod surface;
+pub mod term_units;

@@ -54,6 +54,11 @@ pub(crate) fn take_down(text: &str, part: impl FnOnce(&mut Said) -> &mut String)
     })
 }
 
+/// Whether a program called.
+pub(crate) fn is_called() -> bool {
+    CALLER.with_borrow(Option::is_some)
+}
+
 /// Whom a program that called lets watch the work.
 pub(crate) fn watch() -> Option<Watch> {
     CALLER.with_borrow(|caller| caller.as_ref().map(|own| Arc::clone(&own.watch)))

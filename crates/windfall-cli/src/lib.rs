@@ -23,6 +23,7 @@ mod outcome;
 mod progress;
 mod saying;
 mod show;
+mod terminal;
 
 pub use crate::caller::{Said, Watch};
 

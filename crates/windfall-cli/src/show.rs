@@ -2,9 +2,10 @@
 //! that called.
 
 use crate::args::format::{Format, Shown};
-use crate::caller::take_down;
+use crate::caller::{is_called, take_down};
 use crate::outcome::{Outcome, WrittenRecordings};
 use crate::saying::{Saying, saying};
+use crate::terminal;
 use anyhow::Context;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -14,6 +15,7 @@ use windfall_files::option_value::unusable;
 use windfall_files::provenance::VERSION;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::quote::{command, path_word};
+use windfall_files::text::table::for_terminal;
 use windfall_files::write_file::{check_target, write_whole};
 use windfall_simulate::motion::MotionOutcome;
 
@@ -26,6 +28,14 @@ pub fn write_result(text: &str) -> anyhow::Result<()> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
+    }
+}
+
+/// Writes a result for people: folded to the terminal and in its colours, where there is one.
+pub fn write_text(text: impl FnOnce() -> String) -> anyhow::Result<()> {
+    match is_called() {
+        true => write_result(&text()),
+        false => write_result(&terminal::shown(&for_terminal(terminal::width(), text))),
     }
 }
 
@@ -56,7 +66,10 @@ pub fn show<T: Outcome, E: Into<anyhow::Error>>(
         write_whole(path, formed(format)?.as_bytes())?;
         tell_written([path]);
     }
-    write_result(&formed(shown.format)?)?;
+    match shown.format {
+        Format::Text => write_text(|| text(&outcome))?,
+        format => write_result(&formed(format)?)?,
+    }
     Ok(outcome)
 }
 
@@ -143,7 +156,7 @@ pub fn message(text: &str) {
     if take_down(&format!("{text}\n"), |said| &mut said.messages) {
         return;
     }
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let _ = writeln!(std::io::stderr(), "{}", terminal::message_shown(text));
 }
 
 /// An error with its causes, each once: many messages contain their cause.

@@ -16,9 +16,15 @@ use page::{Page, code_spans, links, page, pages, source};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Pages that need no command: an introduction, tables to look things up in, and Python, which
+/// Pages that need no command: an introduction, tables to look things up in, rules, and Python, which
 /// has tests of its own (`scripts/test-python`).
-const WITHOUT_COMMANDS: [&str; 4] = ["introduction.md", "engines.md", "browser.md", "python.md"];
+const WITHOUT_COMMANDS: [&str; 5] = [
+    "introduction.md",
+    "engines.md",
+    "browser.md",
+    "python.md",
+    "numbers.md",
+];
 
 /// Pages about comparisons and about how windfall is made: their commands need other
 /// programs, data or hours, and are not run; that they exist is checked.

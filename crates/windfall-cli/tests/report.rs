@@ -4,6 +4,7 @@
 
 use serde_json::Value;
 use std::path::Path;
+use windfall_files::text::number::value_and_sd;
 
 fn windfall(arguments: &[&str]) -> assert_cmd::assert::Assert {
     let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_windfall"));
@@ -68,8 +69,9 @@ fn writes_a_page_that_needs_nothing_else() {
     let shown: Value = serde_json::from_str(&read(&out.join("results.json"))).unwrap();
     assert_eq!(shown["summary"], fitted["summary"]);
     for group in fitted["groups"].as_array().unwrap() {
-        let mean = group["parameters"]["k"]["mean"].as_f64().unwrap();
-        assert!(page.contains(&format!("<td>{mean:.0} ±")), "{mean}");
+        let k = &group["parameters"]["k"];
+        let shown = value_and_sd(k["mean"].as_f64().unwrap(), k["sd"].as_f64());
+        assert!(page.contains(&format!("<td>{shown} (")), "{shown}");
     }
     for said in [
         "force exceeded 1 N",

@@ -4,7 +4,7 @@ use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome};
 use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use windfall_files::found::{SpreadOutcome, spread};
-use windfall_files::text::number::{plain, spread_percent, spread_text};
+use windfall_files::text::number::{plain, spread_percent, spread_text, unit_text};
 use windfall_files::text::table::{Cells, header_of, page_tables, paragraph};
 
 /// Velocities and peaks.
@@ -32,14 +32,16 @@ pub fn groups_of<'a>(outcome: &'a CampaignOutcome, law: &str) -> Vec<&'a GroupOu
     groups.filter(|group| group.law == law).collect()
 }
 
-/// "k (N/m^1.5)", or the name alone where impacts differ in the unit.
+/// "k (N/m¹˙⁵)", or the name alone where impacts differ in the unit.
 pub fn heading_of(impacts: &[&ImpactOutcome], name: &str) -> String {
     let mut units = impacts
         .iter()
         .filter_map(|i| i.parameters.get(name))
         .map(|e| &e.unit);
     match units.next() {
-        Some(unit) if unit != "1" && units.all(|other| other == unit) => format!("{name} ({unit})"),
+        Some(unit) if unit != "1" && units.all(|other| other == unit) => {
+            format!("{name} ({})", unit_text(unit))
+        }
         _ => name.to_owned(),
     }
 }

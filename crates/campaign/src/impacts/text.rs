@@ -9,7 +9,8 @@ use crate::result::outcome::{CampaignOutcome, GroupOutcome, ImpactOutcome, Joint
 use crate::result::quantity::{Quantity, quantities_named};
 use itertools::Itertools;
 use std::fmt::Write;
-use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::number::{interval, plain, unit_text, value_and_sd};
+use windfall_files::text::statistic::probability;
 use windfall_files::text::table::{header_of, page_tables, paragraph, title_lines};
 
 /// More impacts than this are shown as groups only.
@@ -137,7 +138,7 @@ pub fn bench_lines(outcome: &CampaignOutcome) -> Vec<String> {
         let (factor, unit) = match own.unit.as_str() {
             "1" => (1.0, String::new()),
             "s" => (1e6, " µs".to_owned()),
-            unit => (1.0, format!(" {unit}")),
+            unit => (1.0, format!(" {}", unit_text(unit))),
         };
         let told = own
             .told
@@ -207,11 +208,7 @@ fn joint_table(outcome: &CampaignOutcome, law: &str, impacts: &[&ImpactOutcome])
         let counts = [own.specimen.clone(), own.impacts.len().to_string()];
         let values = estimates.map(|(_, own)| value_and_sd(own.value, own.sd));
         let reduced = own.chi_square / own.freedom as f64;
-        let p = match own.p < 0.001 {
-            true => "< 0.001".to_owned(),
-            false => format!("{:.3}", own.p),
-        };
-        let tests = [format!("{reduced:.2}"), p];
+        let tests = [format!("{reduced:.2}"), probability(own.p)];
         counts.into_iter().chain(values).chain(tests).collect()
     });
     let table = page_tables(&header, &rows.collect::<Vec<_>>(), &[0]);
@@ -306,7 +303,7 @@ fn interval_table(impacts: &[&ImpactOutcome]) -> String {
             let mut row = vec![impact.id.clone()];
             let parameters = impact.parameters.0.iter();
             row.extend(parameters.map(|(_, estimate)| match estimate.interval() {
-                Some((low, high)) => format!("{} to {}", plain(low), plain(high)),
+                Some((low, high)) => interval(low, high),
                 None => "held".to_owned(),
             }));
             if sampled {

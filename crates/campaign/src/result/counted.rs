@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use windfall_files::found::{FailureOutcome, FindingOutcome, robust_spread};
 use windfall_files::named::grouped;
 use windfall_files::table::data::{EXCLUDE_COLUMN, excludes};
+use windfall_files::text::number::{unit_text, value_and_sd};
 use windfall_identify::rig::kind::Rig;
 
 /// Column of impacts.csv that says why.
@@ -293,8 +294,9 @@ fn undetermined(impact: &ImpactOutcome) -> Option<FindingOutcome> {
     let sd = estimate.sd?;
     (DEVIATIONS * sd > estimate.value.abs()).then(|| {
         let told = format!(
-            "{name} is {:.4e} ± {sd:.1e} {}: the signals do not determine it",
-            estimate.value, estimate.unit
+            "{name} is {} {}: the signals do not determine it",
+            value_and_sd(estimate.value, Some(sd)),
+            unit_text(&estimate.unit)
         );
         FindingOutcome::new("undetermined", told)
     })

@@ -1,6 +1,7 @@
 //! What an impact gives besides the parameters of a law. Each quantity is declared once,
 //! in [`QUANTITIES`]: JSON, CSV, store, reports, tables and the page follow from there.
 
+use windfall_files::text::number::unit_text;
 use windfall_identify::rig::simulate::ImpactSummary;
 use windfall_signal::impact::Measured;
 
@@ -163,7 +164,7 @@ impl Quantity {
     pub fn title(&self) -> String {
         match self.shown_unit {
             "" => self.heading.to_owned(),
-            unit => format!("{} ({unit})", self.heading),
+            unit => format!("{} ({})", self.heading, unit_text(unit)),
         }
     }
 

@@ -5,6 +5,7 @@ use itertools::Itertools;
 use windfall_distribution::tail::{f_upper, t_two_sided};
 use windfall_files::found::FindingOutcome;
 use windfall_files::named::grouped;
+use windfall_files::text::number::p_value;
 use windfall_identify::fit::result::PHASES;
 use windfall_numerics::cholesky;
 
@@ -53,8 +54,9 @@ pub fn law_misfits(impacts: &[ImpactOutcome], bench_is_off: bool) -> Vec<Finding
             (common.chance < BY_CHANCE).then(|| {
                 let where_ = 100.0 * (common.phase as f64 + 0.5) / PHASES as f64;
                 format!(
-                    "a mean {words} residual of {:.2} of its rms at {where_:.0} % of the contact (p = {:.0e})",
-                    common.size, common.chance
+                    "a mean {words} residual of {:.2} of its rms at {where_:.0} % of the contact ({})",
+                    common.size,
+                    p_value(common.chance)
                 )
             })
         });

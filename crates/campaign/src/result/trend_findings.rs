@@ -4,7 +4,7 @@ use crate::result::outcome::TrendOutcome;
 use crate::result::trend::Over;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::found::FindingOutcome;
-use windfall_files::text::number::value_and_sd;
+use windfall_files::text::number::{p_value, value_and_sd};
 
 /// Probability of a chance below which a trend is told; that of one law of a campaign.
 const BY_CHANCE: f64 = 0.01;
@@ -40,8 +40,10 @@ impl TrendOutcome {
             ""
         };
         format!(
-            "{} impacts on {} fruit{within}, p = {:.0e}",
-            self.impacts, self.specimens, self.p
+            "{} impacts on {} fruit{within}, {}",
+            self.impacts,
+            self.specimens,
+            p_value(self.p)
         )
     }
 }

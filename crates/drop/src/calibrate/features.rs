@@ -23,7 +23,8 @@ use windfall_drop_rig::rig::DropRig;
 use windfall_drop_rig::start::coarse_starts;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
-use windfall_files::text::number::plain;
+use windfall_files::text::number::{plain, unit_text};
+use windfall_files::text::statistic::chi_square;
 use windfall_measure::measured::value_with_sd;
 use windfall_tables::regress::findings::finding;
 
@@ -267,11 +268,10 @@ fn findings_of(law: &FreeLaw, outcome: &FeaturesOutcome) -> Vec<FindingOutcome> 
     }
     if let (Some(p), true) = (outcome.p, outcome.widened > 1.0) {
         let message = format!(
-            "the features scatter more than their uncertainties say (χ² {} on {}, p {p:.2e}): \
+            "the features scatter more than their uncertainties say ({}): \
              fruit differ, or the law misses something; the standard uncertainties were widened \
              {} times",
-            plain(outcome.chi_square),
-            outcome.freedom,
+            chi_square(outcome.chi_square, outcome.freedom as f64, Some(p)),
             plain(outcome.widened)
         );
         findings.push(finding("scatter", message));
@@ -463,7 +463,7 @@ fn line_words(law: &FreeLaw, members: &[FamilyMember]) -> String {
             let value = plain(*value);
             match law.level_unit(place).as_str() {
                 "1" => format!("{name} = {value}"),
-                unit => format!("{name} = {value} {unit}"),
+                unit => format!("{name} = {value} {}", unit_text(unit)),
             }
         });
         words.collect::<Vec<_>>().join(", ")

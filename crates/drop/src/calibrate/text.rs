@@ -6,7 +6,8 @@ use crate::calibrate::waveform_text::{shown_value, text_of_waveform};
 use std::fmt::Write;
 use windfall_files::error::Error;
 use windfall_files::table::write::{csv_text, number_cell};
-use windfall_files::text::number::{plain, value_and_sd};
+use windfall_files::text::number::{beside_sd, plain, unit_text, value_and_sd};
+use windfall_files::text::statistic::chi_square;
 use windfall_files::text::table::{
     failures_list, findings_list, header_of, page_tables, paragraph, title_lines,
 };
@@ -78,7 +79,8 @@ fn features_text(features: &FeaturesOutcome) -> String {
     let mut text = format!("\nBy features: {}\n", features.law);
     let rows = features.parameters.iter().map(|parameter| {
         let written = &parameter.written;
-        let end = |value: Option<f64>| value.map_or_else(|| "open".to_owned(), plain);
+        let own = |value: f64| beside_sd(value, written.sd.unwrap_or(f64::INFINITY));
+        let end = |value: Option<f64>| value.map_or_else(|| "open".to_owned(), own);
         let unit = if written.unit == "1" {
             ""
         } else {
@@ -87,23 +89,19 @@ fn features_text(features: &FeaturesOutcome) -> String {
         let sd = written.sd.map_or("not determined".to_owned(), plain);
         vec![
             parameter.name.clone(),
-            plain(written.value),
+            own(written.value),
             sd,
             end(written.low),
             end(written.high),
-            unit.to_owned(),
+            unit_text(unit),
         ]
     });
     let header = header_of(&["parameter", "value", "sd", "95 % from", "to", "unit"]);
     text += &page_tables(&header, &rows.collect::<Vec<_>>(), &[0, 5]);
-    let p = features
-        .p
-        .map_or_else(String::new, |p| format!(", p {p:.3}"));
+    let misfit = chi_square(features.chi_square, features.freedom as f64, features.p);
     let _ = writeln!(
         text,
-        "\nχ² {} on {}{p}; directions determined: {} of {}",
-        plain(features.chi_square),
-        features.freedom,
+        "\n{misfit}; directions determined: {} of {}",
         features.rank,
         features.parameters.len()
     );

@@ -2,8 +2,7 @@
 
 use crate::calibrate::waveform_outcome::{WaveformOutcome, WaveformParameter};
 use std::fmt::Write;
-use windfall_files::text::number::{plain, value_and_sd};
-use windfall_files::text::statistic::number;
+use windfall_files::text::number::{beside_sd, plain, unit_text, value_and_sd};
 use windfall_files::text::table::{header_of, page_tables};
 use windfall_measure::measured::MeasuredValue;
 
@@ -23,14 +22,15 @@ pub fn text_of_waveform(waveform: &WaveformOutcome) -> String {
     );
     let rows = waveform.parameters.iter().map(|parameter| {
         let shown = shown_value(parameter);
-        let end = |value: Option<f64>| number(value.unwrap_or(f64::NAN));
+        let sd = shown.sd.unwrap_or(f64::INFINITY);
+        let end = |value: Option<f64>| beside_sd(value.unwrap_or(f64::NAN), sd);
         let unit = if shown.unit == "1" { "" } else { &shown.unit };
         vec![
             parameter.name.clone(),
             value_and_sd(shown.value, shown.sd),
             end(shown.low),
             end(shown.high),
-            unit.to_owned(),
+            unit_text(unit),
         ]
     });
     let header = header_of(&["parameter", "value ± sd", "95 % from", "to", "unit"]);

@@ -1,16 +1,9 @@
 //! Statistics for people: probabilities, numbers that may not exist, degrees of
 //! freedom.
 
-use crate::text::number::plain;
+use crate::text::number::{p_value, plain};
 
-/// A probability as people read it.
-pub fn probability(p: f64) -> String {
-    match p {
-        p if p.is_nan() => "-".to_owned(),
-        p if p < 1e-4 => format!("{p:.1e}"),
-        p => format!("{p:.4}"),
-    }
-}
+pub use windfall_numerics::written::probability;
 
 /// A number, or a dash where there is none.
 pub fn number(value: f64) -> String {
@@ -26,4 +19,11 @@ pub fn freedom(df: f64) -> String {
         true => df.to_string(),
         false => plain(df),
     }
+}
+
+/// A chi-square with its degrees of freedom and, where it is known, its probability:
+/// "χ²(4) = 12.30, p = 0.015".
+pub fn chi_square(statistic: f64, df: f64, p: Option<f64>) -> String {
+    let told = p.map_or_else(String::new, |p| format!(", {}", p_value(p)));
+    format!("χ²({}) = {}{told}", freedom(df), number(statistic))
 }

@@ -1,16 +1,35 @@
-//! Aligned tables for a terminal, none wider than a page.
+//! Aligned tables for a terminal, none wider than a page or than the terminal.
 
 use crate::found::{FailureOutcome, FindingOutcome};
 use crate::known_names::few_names;
 use crate::named::grouped;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 use itertools::Itertools;
+use std::cell::Cell;
 
 /// Widest line of a table or a paragraph; characters.
 pub const PAGE: usize = 100;
 
 /// What a column takes beside its text; characters.
 const GAP: usize = 3;
+
+/// Narrowest page to which text is folded; characters.
+const NARROWEST: usize = 40;
+
+thread_local! {
+    /// Width of the terminal that shows the text made on this thread; characters.
+    static TERMINAL: Cell<Option<usize>> = const { Cell::new(None) };
+}
+
+/// Does work whose tables and paragraphs are for a terminal of this width.
+///
+/// * `width`: characters; none for text that is not for a terminal
+pub fn for_terminal<T>(width: Option<usize>, work: impl FnOnce() -> T) -> T {
+    let before = TERMINAL.replace(width.map(|width| width.max(NARROWEST)));
+    let made = work();
+    TERMINAL.set(before);
+    made
+}
 
 /// A table as words, for a terminal or a page.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,10 +40,57 @@ pub struct Cells {
     pub rows: Vec<Vec<String>>,
 }
 
-/// An aligned table; columns not in `left` are set flush right.
+/// An aligned table; columns not in `left` are set flush right. Where a terminal shows it and
+/// is not wide enough, it comes in parts as those of [`page_tables`].
 pub fn table_text(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,
+    left: &[usize],
+) -> String {
+    let rows: Vec<Vec<String>> = rows.into_iter().collect();
+    tables_within(TERMINAL.get().unwrap_or(usize::MAX), header, &rows, left)
+}
+
+/// A table as [`table_text`], in as many parts as it takes to stay within a
+/// page, or within the terminal that shows it. Every part begins with the first column.
+pub fn page_tables(header: &[String], rows: &[Vec<String>], left: &[usize]) -> String {
+    tables_within(TERMINAL.get().unwrap_or(PAGE), header, rows, left)
+}
+
+/// A table in as many parts as it takes to stay within a width; characters.
+fn tables_within(most: usize, header: &[String], rows: &[Vec<String>], left: &[usize]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        GAP + cells
+            .chain([header[column].chars().count()])
+            .max()
+            .unwrap_or(0)
+    };
+    let mut parts: Vec<Vec<usize>> = vec![vec![0]];
+    let mut used = width(0);
+    for column in 1..header.len() {
+        let part = parts.len() - 1;
+        if used.saturating_add(width(column)) > most && parts[part].len() > 1 {
+            parts.push(vec![0, column]);
+            used = width(0) + width(column);
+        } else {
+            parts[part].push(column);
+            used += width(column);
+        }
+    }
+    let tables = parts.iter().map(|columns| {
+        let pick = |row: &[String]| columns.iter().map(|&i| row[i].clone()).collect::<Vec<_>>();
+        let left: Vec<usize> = (0..columns.len())
+            .filter(|&i| left.contains(&columns[i]))
+            .collect();
+        whole_table(&pick(header), rows.iter().map(|row| pick(row)), &left)
+    });
+    tables.collect::<Vec<_>>().join("\n\n")
+}
+
+fn whole_table(
+    header: &[String],
+    rows: impl Iterator<Item = Vec<String>>,
     left: &[usize],
 ) -> String {
     let line = LineStyle::none().fill('─').junction('─');
@@ -43,44 +109,13 @@ pub fn table_text(
     table.trim_fmt()
 }
 
-/// A table as [`table_text`], in as many parts as it takes to stay within a
-/// page. Every part begins with the first column.
-pub fn page_tables(header: &[String], rows: &[Vec<String>], left: &[usize]) -> String {
-    let width = |column: usize| {
-        let cells = rows.iter().map(|row| row[column].chars().count());
-        GAP + cells
-            .chain([header[column].chars().count()])
-            .max()
-            .unwrap_or(0)
-    };
-    let mut parts: Vec<Vec<usize>> = vec![vec![0]];
-    let mut used = width(0);
-    for column in 1..header.len() {
-        let part = parts.len() - 1;
-        if used + width(column) > PAGE && parts[part].len() > 1 {
-            parts.push(vec![0, column]);
-            used = width(0) + width(column);
-        } else {
-            parts[part].push(column);
-            used += width(column);
-        }
-    }
-    let tables = parts.iter().map(|columns| {
-        let pick = |row: &[String]| columns.iter().map(|&i| row[i].clone()).collect::<Vec<_>>();
-        let left: Vec<usize> = (0..columns.len())
-            .filter(|&i| left.contains(&columns[i]))
-            .collect();
-        table_text(&pick(header), rows.iter().map(|row| pick(row)), &left)
-    });
-    tables.collect::<Vec<_>>().join("\n\n")
-}
-
 /// A paragraph broken into lines of a page, all but the first indented.
 pub fn paragraph(text: &str, indent: usize) -> String {
+    let page = TERMINAL.get().map_or(PAGE, |width| width.min(PAGE));
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= PAGE => {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= page => {
                 line.push(' ');
                 line.push_str(word);
             }
@@ -200,6 +235,32 @@ mod tests {
         assert!(text.lines().all(|line| line.chars().count() <= PAGE));
         assert_eq!(text.matches("first").count(), 2);
         assert_eq!(text.matches(&wide).count(), 3);
+    }
+
+    #[test]
+    fn closed_form_tables_fold_to_the_terminal() {
+        let header = texts(&["id", "peak force (N)", "duration (ms)", "energy (mJ)"]);
+        let rows = [texts(&["a-1", "12.3 ± 0.4", "4.16", "118"])];
+        let whole = table_text(&header, rows.clone(), &[0]);
+        assert_eq!(whole.lines().count(), 3);
+        let folded = for_terminal(Some(44), || table_text(&header, rows.clone(), &[0]));
+        assert!(
+            folded.lines().all(|line| line.chars().count() <= 44),
+            "{folded}"
+        );
+        assert_eq!(folded.matches("a-1").count(), 2);
+        for cell in header.iter().chain(&rows[0]) {
+            assert!(folded.contains(cell), "{cell}");
+        }
+        let long = "word ".repeat(60);
+        let text = for_terminal(Some(60), || paragraph(long.trim(), 2));
+        assert!(text.lines().all(|line| line.chars().count() <= 60));
+        // What is written later is whole again, and a wider terminal takes more columns.
+        assert_eq!(table_text(&header, rows.clone(), &[0]), whole);
+        let wide = texts(&["w".repeat(40).as_str(); 4]);
+        let parts = |width| for_terminal(width, || page_tables(&wide, &[], &[0]));
+        assert_eq!(parts(None).lines().count(), 8);
+        assert_eq!(parts(Some(200)).lines().count(), 2);
     }
 
     #[test]

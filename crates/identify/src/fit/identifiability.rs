@@ -1,6 +1,7 @@
 //! Which parameters the data can separate, in words.
 
 use nalgebra::{DMatrix, SymmetricEigen};
+use windfall_numerics::written::{unit_text, with_digits};
 
 /// Shares of a direction smaller than this are not worth a word; of its largest.
 const WORTH_A_WORD: f64 = 0.25;
@@ -73,7 +74,7 @@ pub fn trade(covariance: &[Vec<f64>], parameter: usize) -> Option<Trade> {
     })
 }
 
-/// A direction in words: "k -0.9 %, c +4.1 %, onset -3.5e-5 s". Parameters with
+/// A direction in words: "k -0.9 %, c +4.1 %, onset -3.50·10⁻⁵ s". Parameters with
 /// `relative` are given in % of their value.
 pub fn in_words(
     direction: &Direction,
@@ -89,7 +90,14 @@ pub fn in_words(
         match (*relative, *unit) {
             (true, _) => format!("{name} {:+.2} %", 100.0 * change / value),
             (false, "1") => format!("{name} {change:+.3}"),
-            (false, unit) => format!("{name} {change:+.2e} {unit}"),
+            (false, unit) => {
+                let sign = if change < 0.0 { "" } else { "+" };
+                format!(
+                    "{name} {sign}{} {}",
+                    with_digits(change, 3),
+                    unit_text(unit)
+                )
+            }
         }
     });
     words.collect::<Vec<_>>().join(", ")
@@ -124,7 +132,7 @@ mod tests {
             &covariance,
             &[("k", 100.0, "N/m", true), ("onset", 0.0, "s", false)],
         );
-        assert!(words.starts_with("k +1.99 %, onset +2.98e0 s"), "{words}");
+        assert!(words.starts_with("k +1.99 %, onset +2.98 s"), "{words}");
     }
 
     #[test]

@@ -203,9 +203,9 @@ impl Cursor<'_> {
 }
 
 fn superscript(c: char) -> Option<char> {
-    const SUPERSCRIPTS: [char; 11] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹', '⁻'];
-    let index = SUPERSCRIPTS.iter().position(|&s| s == c)?;
-    "0123456789-".chars().nth(index)
+    const SUPERSCRIPTS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻˙";
+    let index = SUPERSCRIPTS.chars().position(|s| s == c)?;
+    "0123456789-.".chars().nth(index)
 }
 
 /// Unit of a symbol with or without prefix.

@@ -18,6 +18,7 @@ use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::option_value::unusable;
 use windfall_files::table::data::{Data, DataFile, Wanted, open_data};
+use windfall_files::text::number::p_value;
 use windfall_files::write_file::check_outputs;
 use windfall_statistics::accurate_sum::mean;
 use windfall_statistics::compare::equal_variance::{bartlett, brown_forsythe, levene};
@@ -369,7 +370,10 @@ fn variance_finding(test: Option<FTest>, request: &CompareRequest) -> Option<Fin
     };
     Some(finding(
         "unequal-variances",
-        format!("the groups' variances differ (Brown-Forsythe p {p:.2e}): {advice}"),
+        format!(
+            "the groups' variances differ (Brown-Forsythe, {}): {advice}",
+            p_value(p)
+        ),
     ))
 }
 
@@ -377,7 +381,10 @@ fn normality_finding(test: Option<StatisticTest>, what: &str) -> Option<FindingO
     let p = test.map(|test| test.p).filter(|p| *p < NOTABLE)?;
     Some(finding(
         "not-normal",
-        format!("the {what} are not normal (Shapiro-Wilk p {p:.2e}); look for outliers or skew"),
+        format!(
+            "the {what} are not normal (Shapiro-Wilk, {}); look for outliers or skew",
+            p_value(p)
+        ),
     ))
 }
 

@@ -7,7 +7,7 @@ use crate::rows::{RowCount, rows_text};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::columns::{Column, csv_of_rows, given, strings, text_of_rows};
-use windfall_files::text::number::plain;
+use windfall_files::text::number::{beside_sd, plain};
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::{findings_list, page_tables};
 use windfall_statistics::compare::group_summary::GroupSummary;
@@ -28,9 +28,13 @@ fn group_cells(group: &GroupSummary) -> Vec<String> {
         true => format!("{:.1} %", 100.0 * group.cv),
         false => "-".to_owned(),
     };
-    let mut cells = vec![group.group.clone(), group.n.to_string(), number(group.mean)];
+    let mut cells = vec![
+        group.group.clone(),
+        group.n.to_string(),
+        beside_sd(group.mean, group.se),
+    ];
     cells.extend([number(group.sd), cv, number(group.se)]);
-    cells.extend([group.low, group.high].map(number));
+    cells.extend([group.low, group.high].map(|end| beside_sd(end, group.se)));
     cells
 }
 

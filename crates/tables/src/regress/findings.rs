@@ -5,8 +5,7 @@ use crate::rows::{GroupLoss, RowCount, lines_text};
 use std::collections::BTreeMap;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::data::Data;
-use windfall_files::text::number::plain;
-use windfall_files::text::statistic::probability;
+use windfall_files::text::number::{p_value, plain};
 use windfall_statistics::model::anova::LackOfFit;
 use windfall_statistics::model::encoding::Encoding;
 use windfall_statistics::model::formula_syntax::Kind;
@@ -196,10 +195,10 @@ pub(crate) fn lack_finding(lack_of_fit: Option<&LackOfFit>) -> Option<FindingOut
         finding(
             "lack-of-fit",
             format!(
-                "the model misses rows by more than repeated rows scatter (p {}): a term may be \
+                "the model misses rows by more than repeated rows scatter ({}): a term may be \
                  missing, or repeats were made in the same batch or on the same day and differ \
                  less than other rows do",
-                probability(lack.p)
+                p_value(lack.p)
             ),
         )
     })

@@ -5,22 +5,23 @@ use crate::regress::mixed::{MixedOutcome, MixedPredictionOutcome, MixedTest, Var
 use crate::regress::outcome::{original_cell, original_text};
 use crate::regress::text::{csv_of_terms, weights_text};
 use crate::rows::rows_text;
+use crate::term_units::{coefficient_unit, table_of_terms};
 use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, text_of_rows};
-use windfall_files::text::number::plain;
-use windfall_files::text::statistic::{freedom, number, probability};
+use windfall_files::text::number::{beside_sd, plain};
+use windfall_files::text::statistic::{chi_square, freedom, number, probability};
 use windfall_files::text::table::findings_list;
 use windfall_mixed::coefficient::Coefficient;
 
 const TERMS: [Column<Coefficient>; 8] = [
     ("term", |term| term.name.clone()),
-    ("estimate", |term| number(term.estimate)),
+    ("estimate", |term| beside_sd(term.estimate, term.se)),
     ("se", |term| number(term.se)),
     ("df", |term| number(term.df)),
     ("t", |term| number(term.t)),
     ("p", |term| probability(term.p)),
-    ("from", |term| number(term.low)),
-    ("to", |term| number(term.high)),
+    ("from", |term| beside_sd(term.low, term.se)),
+    ("to", |term| beside_sd(term.high, term.se)),
 ];
 
 pub(crate) const TESTS: [Column<MixedTest>; 5] = [
@@ -89,6 +90,7 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
         false => String::new(),
     };
     let whole = outcome.count.left_out == 0;
+    let unit = |term: &Coefficient| coefficient_unit(&outcome.response, &term.name);
     let mut text = format!(
         "{}{rows}; groups: {}; {}\n{}\n",
         formula(whole),
@@ -102,18 +104,16 @@ pub fn text_of_mixed(outcome: &MixedOutcome) -> String {
     text += &format!(
         "{}\n\nTests of the terms, each after all others ({}):\n{}\n\n\
          Standard deviations and correlations, with profile intervals of the same likelihood:\n{}\n\n",
-        text_of_rows(&outcome.terms, &TERMS, &[0]),
+        table_of_terms(&outcome.terms, &TERMS, ("unit", unit), &[0]),
         outcome.df_method,
         text_of_rows(&outcome.anova, &TESTS, &[0]),
         text_of_rows(&outcome.variances, &VARIANCES, &[0, 1, 2])
     );
     if let Some(own) = &outcome.level_variances {
         text += &format!(
-            "against one residual standard deviation for all levels of {}: χ² {} on {}, p {}\n",
+            "against one residual standard deviation for all levels of {}: {}\n",
             own.by,
-            number(own.test.statistic),
-            own.test.df,
-            probability(own.test.p),
+            chi_square(own.test.statistic, own.test.df as f64, Some(own.test.p)),
         );
     }
     text += &format!(

@@ -3,8 +3,8 @@
 use crate::regress::findings::finding;
 use windfall_files::found::FindingOutcome;
 use windfall_files::text::columns::given;
-use windfall_files::text::number::plain;
-use windfall_files::text::statistic::{number, probability};
+use windfall_files::text::number::{p_value, plain};
+use windfall_files::text::statistic::number;
 
 use crate::goodness_index::{CHI_SQUARED_CAVEAT, goodness_index};
 use serde::Serialize;
@@ -132,11 +132,7 @@ pub(crate) fn residual_findings(outcome: &ResidualOutcome) -> Vec<FindingOutcome
     let doubtful = outcome.tests.iter().filter(|test| test.p < DOUBTFUL);
     let mut found: Vec<FindingOutcome> = doubtful
         .map(|test| {
-            let message = format!(
-                "the residuals are not {}: p {}",
-                test.test,
-                probability(test.p)
-            );
+            let message = format!("the residuals are not {}: {}", test.test, p_value(test.p));
             finding("residuals", message)
         })
         .collect();
@@ -164,8 +160,8 @@ pub fn residuals_text(outcome: &ResidualOutcome) -> String {
         text += "\nResiduals:\n";
     }
     for test in &outcome.tests {
-        let (statistic, p) = (number(test.statistic), probability(test.p));
-        text += &format!("  {}: {statistic}, p {p}\n", test.test);
+        let (statistic, p) = (number(test.statistic), p_value(test.p));
+        text += &format!("  {}: {statistic}, {p}\n", test.test);
     }
     if let Some(found) = &outcome.box_cox {
         let end = |end: Option<f64>| end.map_or_else(|| "beyond ±3".to_owned(), plain);

@@ -6,8 +6,10 @@ use crate::regress::residuals::residuals_text;
 use crate::regress::run::RegressOutcome;
 use crate::regress::variances::text::variances_text;
 use crate::rows::rows_text;
+use crate::term_units::{coefficient_unit, in_unit_of, table_of_terms};
 use windfall_files::error::Error;
 use windfall_files::text::columns::{Column, csv_of_rows, given, text_of_rows};
+use windfall_files::text::number::{beside_sd, p_value};
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::{findings_list, page_tables, paragraph};
 use windfall_mixed::coefficient::Coefficient;
@@ -16,12 +18,12 @@ use windfall_statistics::model::linear_model::Quality;
 
 const TERMS: [Column<Coefficient>; 7] = [
     ("term", |term| term.name.clone()),
-    ("estimate", |term| number(term.estimate)),
+    ("estimate", |term| beside_sd(term.estimate, term.se)),
     ("se", |term| number(term.se)),
     ("t", |term| number(term.t)),
     ("p", |term| probability(term.p)),
-    ("from", |term| number(term.low)),
-    ("to", |term| number(term.high)),
+    ("from", |term| beside_sd(term.low, term.se)),
+    ("to", |term| beside_sd(term.high, term.se)),
 ];
 
 const TERMS_CSV: [Column<Coefficient>; 8] = [
@@ -122,11 +124,11 @@ pub(crate) fn lack_of_fit_text(lack_of_fit: Option<&LackOfFit>, unrepeated: &str
             .to_owned();
     }
     format!(
-        "lack of fit: F {} on {} and {}, p {}\n",
-        number(lack.f),
+        "lack of fit: F({}, {}) = {}, {}\n",
         freedom(lack.df),
         freedom(pure_error.df),
-        probability(lack.p)
+        number(lack.f),
+        p_value(lack.p)
     )
 }
 
@@ -141,7 +143,8 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     if !outcome.steps.is_empty() {
         text += &(steps_text(&outcome.steps) + "\n\n");
     }
-    text += &text_of_rows(&outcome.terms, &TERMS, &[0]);
+    let unit = |term: &Coefficient| coefficient_unit(&outcome.response, &term.name);
+    text += &table_of_terms(&outcome.terms, &TERMS, ("unit", unit), &[0]);
     if let Some(name) = &outcome.weights {
         text += &format!("\n{}", weights_text(name));
     }
@@ -154,14 +157,14 @@ pub fn text_of_regress(outcome: &RegressOutcome) -> String {
     }
     text += &format!(
         "\n\n{}\nresidual standard deviation {} on {} degrees of freedom\n\
-         model F {} on {} and {}, p {}\nAICc {}, BIC {}, adequate precision {}\n",
+         model F({}, {}) = {}, {}\nAICc {}, BIC {}, adequate precision {}\n",
         r2_text(quality),
-        number(quality.sigma),
+        in_unit_of(&outcome.response, number(quality.sigma)),
         outcome.residual.df,
-        number(outcome.model.f),
         outcome.model.df,
         outcome.residual.df,
-        probability(outcome.model.p),
+        number(outcome.model.f),
+        p_value(outcome.model.p),
         number(quality.aicc),
         number(quality.bic),
         number(quality.adequate_precision),

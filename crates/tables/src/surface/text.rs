@@ -6,10 +6,11 @@ use crate::regress::text::{anova_text, lack_of_fit_text, r2_text};
 use crate::surface::outcome::{
     FactorOutcome, RandomOutcome, SettingOutcome, SurfaceModel, SurfaceOutcome, SurfaceTerm,
 };
+use crate::term_units::{coefficient_unit, in_unit_of, table_of_terms};
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::columns::{Column, strings, text_of_rows};
-use windfall_files::text::number::plain;
+use windfall_files::text::number::{beside_sd, plain};
 use windfall_files::text::statistic::number;
 use windfall_files::text::table::{findings_list, page_tables};
 use windfall_statistics::model::anova::AnovaRow;
@@ -29,14 +30,15 @@ const TERMS: [Column<SurfaceTerm>; 5] = [
         true => String::new(),
         false => term.name.clone(),
     }),
-    ("coded", |term| number(term.coded)),
+    ("coded", |term| beside_sd(term.coded, term.se)),
     ("se", |term| number(term.se)),
     ("actual", |term| number(term.actual)),
 ];
 
 /// Surfaces as text.
 pub fn text_of_surface(outcome: &SurfaceOutcome) -> String {
-    let mut text = text_of_rows(&outcome.factors, &FACTORS, &[0, 1]);
+    let unit = |factor: &FactorOutcome| coefficient_unit(&factor.name, "(Intercept)");
+    let mut text = table_of_terms(&outcome.factors, &FACTORS, ("unit", unit), &[0, 1]);
     text += &format!("\nCoding: {}\n", outcome.coding);
     for model in &outcome.responses {
         text += &model_text(outcome, model);
@@ -87,17 +89,23 @@ fn model_text(outcome: &SurfaceOutcome, model: &SurfaceModel) -> String {
         "\n{}\n{}\n{}\nAnalysis of variance, type {}, in coded units:\n{}\n\n{}\n\
          residual standard deviation {} ({} % of the mean), adequate precision {}\n{}{}",
         model.response,
-        text_of_rows(&model.terms, &TERMS, &[0, 1]),
+        terms_text(model),
         blocks_text(model),
         model.anova_type,
         anova_text(&rows, model.residual, lack_of_fit, model.total),
         r2_text(quality),
-        number(quality.sigma),
+        in_unit_of(&model.response, number(quality.sigma)),
         number(model.cv_percent),
         number(quality.adequate_precision),
         lack_of_fit_text(lack_of_fit, "no run is repeated"),
         canonical_text(outcome, model)
     )
+}
+
+/// Coefficients of the coded factors and of the actual ones.
+fn terms_text(model: &SurfaceModel) -> String {
+    let unit = |term: &SurfaceTerm| coefficient_unit(&model.response, &term.name);
+    table_of_terms(&model.terms, &TERMS, ("unit of actual", unit), &[0, 1])
 }
 
 /// A model with random groups: tests with their own degrees of freedom in place of sums of squares.
@@ -132,14 +140,14 @@ fn random_text(outcome: &SurfaceOutcome, model: &SurfaceModel, random: &RandomOu
         model.response,
         groups.join(", "),
         random.method,
-        text_of_rows(&model.terms, &TERMS, &[0, 1]),
+        terms_text(model),
         blocks_text(model),
         random.df_method,
         text_of_rows(&tests, &TESTS, &[0]),
         text_of_rows(&random.variances, &VARIANCES, &[0, 1, 2]),
         plain(quality.r2),
         plain(random.r2_conditional),
-        number(quality.sigma),
+        in_unit_of(&model.response, number(quality.sigma)),
         number(model.cv_percent),
         number(quality.adequate_precision),
         canonical_text(outcome, model)

@@ -3,7 +3,7 @@
 use crate::args::fit::FitArguments;
 use crate::args::format::Format;
 use crate::progress::with_bar;
-use crate::show::{csv_of_names, message, note, show, tell_failures, tell_unused, write_result};
+use crate::show::{csv_of_names, message, note, show, tell_failures, tell_unused, write_text};
 use std::ops::ControlFlow;
 use windfall_campaign::impacts::run::fit_recording;
 use windfall_campaign::impacts::shard::{ShardOutcome, fit_part};
@@ -34,7 +34,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
             &|_, _| ControlFlow::Continue(()),
             &mut |told| {
                 let shown = match told {
-                    Ok(watched) => write_result(&text_of_watched(watched)),
+                    Ok(watched) => write_text(|| text_of_watched(watched)),
                     Err(error) => {
                         message(&format!("error: {error}"));
                         Ok(())

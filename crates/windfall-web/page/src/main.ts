@@ -1,5 +1,6 @@
 import { mount } from "svelte";
 import App from "./App.svelte";
+import { copySelected } from "./lib/copy";
 import { notices } from "./lib/state.svelte";
 import "uplot/dist/uPlot.min.css";
 import "./app.css";
@@ -10,6 +11,8 @@ window.addEventListener("error", (event) => {
   if (event.error != null) notices.error(event.error);
 });
 window.addEventListener("unhandledrejection", (event) => notices.error(event.reason));
+
+document.addEventListener("copy", copySelected);
 
 const target = document.getElementById("page");
 if (target === null) throw new Error("index.html has no element #page");

@@ -1,12 +1,27 @@
 /** Numbers, differences and options as the page writes them. */
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { runnerImport } from "vite";
 
 const load = async (path) => (await runnerImport(path, { configFile: false, logLevel: "error" })).module;
-const { bytes, estimate, integer, interval, number, percent, plusMinus, quantity, quantityPlusMinus, unitText } =
-  await load("./src/lib/format.ts");
+const {
+  bytes,
+  chiSquare,
+  estimate,
+  integer,
+  interval,
+  number,
+  percent,
+  plusMinus,
+  probability,
+  pValue,
+  quantity,
+  quantityPlusMinus,
+  unitText,
+} = await load("./src/lib/format.ts");
+const { plainText, values } = await load("./src/lib/spreadsheet.ts");
 const { filledIn, namesColumn, placeholders } = await load("./src/lib/placeholders.ts");
 const { entryOf, linksOf, whyNot } = await load("./src/lib/kinds.ts");
 const { firstGuess } = await load("./src/lib/surface.ts");
@@ -18,6 +33,41 @@ const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts"
 
 /** With plain spaces and minus, so that the expectations can be read. */
 const plain = (text) => text.replace(/[\u202f\u00a0]/g, " ").replaceAll("\u2212", "-");
+
+test("numbers, probabilities and units are those of the program", () => {
+  const cases = JSON.parse(readFileSync(new URL("../../../files/src/text/number_cases.json", import.meta.url)));
+  const writers = {
+    number,
+    digits: number,
+    value_and_sd: plusMinus,
+    percent,
+    probability,
+    p_value: pValue,
+    chi_square: chiSquare,
+    unit: unitText,
+  };
+  assert.deepEqual(Object.keys(cases), Object.keys(writers));
+  for (const [name, rows] of Object.entries(cases)) {
+    for (const row of rows) {
+      // The page parts thousands, the program does not.
+      const written = plain(writers[name](...row.slice(0, -1)).replace(/(\d)\u202f(?=\d)/g, "$1"));
+      assert.equal(written, row.at(-1), `${name} of ${row.slice(0, -1)}`);
+    }
+  }
+});
+
+test("copied cells are numbers for a spreadsheet", () => {
+  for (const [shown, copied] of [
+    [number(746129.4), "746100"],
+    [number(-1.5e-9, 2), "-1.5e-9"],
+    [number(null), ""],
+    ["12\u202f300\u202fN", "12300 N"],
+    ["k (N/m¹˙⁵)", "k (N/m¹˙⁵)"],
+  ]) {
+    assert.equal(plainText(shown), copied);
+  }
+  assert.equal(values(0.1 + 0.2, null, "a\tb"), "0.30000000000000004\t\ta b");
+});
 
 test("numbers have the digits that were asked for", () => {
   for (const [value, digits, words] of [
@@ -45,7 +95,7 @@ test("a deviation has two digits, and its value goes as far", () => {
     [0.38802610, 0.00017742, "0.38803 ± 0.00018"],
     [0.5, 0.0999, "0.50 ± 0.10"],
     [-8.5408e-7, 6.1519e-7, "(-8.5 ± 6.2)·10⁻⁷"],
-    [3, null, "3.0000"],
+    [3, null, "3.000"],
     [NaN, 1, "–"],
   ]) {
     assert.equal(plain(plusMinus(value, sd)), words);
@@ -66,8 +116,8 @@ test("quantities have prefix and unit", () => {
   assert.equal(plain(percent(0.356)), "36 %");
   assert.equal(plain(bytes(34_000)), "34.0 kB");
   assert.equal(unitText("m/s^2"), "m/s²");
-  assert.equal(unitText("N/m^1.5"), "N/m^1.5");
-  assert.equal(unitText("N/m^1.508292561"), "N/m^1.508");
+  assert.equal(unitText("N/m^1.5"), "N/m¹˙⁵");
+  assert.equal(unitText("N/m^1.508292561"), "N/m¹˙⁵⁰⁸");
 });
 
 test("a difference turns one text into the other, with no more changes than needed", () => {

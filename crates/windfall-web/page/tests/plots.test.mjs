@@ -49,6 +49,19 @@ test("ticks are round, lie within, and their labels tell them apart", () => {
     assert.equal(new Set(labels).size, labels.length, labels.join(" "));
     assert.ok(labels.every((label) => label.length <= 9), labels.join(" "));
   }
+  // Never fewer than three, wherever the ends lie and however few are asked for.
+  for (let at = 0; at < 400; at += 1) {
+    const low = (at - 200) * 0.37;
+    for (const width of [0.013, 0.7, 1.01, 2.9, 49, 777]) {
+      for (const kind of low > 0 ? ["linear", "log"] : ["linear"]) {
+        for (const count of [3, 4, 6]) {
+          const found = scale.ticks({ kind, domain: [low, low + width], range: [0, 100] }, count);
+          assert.ok(found.length >= 3 && found.length <= 4 * count, `${kind} ${low} ${width}: ${found}`);
+          assert.ok(found.every((t) => t >= low - 1e-9 * width && t <= low + width * (1 + 1e-9)));
+        }
+      }
+    }
+  }
   const log = { kind: "log", domain: [0.05, 3e6], range: [0, 100] };
   assert.deepEqual(scale.ticks(log, 10), [0.1, 1, 10, 100, 1e3, 1e4, 1e5, 1e6]);
   assert.equal(scale.place(log, 0), 0);

@@ -19,6 +19,7 @@ use windfall_tables::regress::run::{AnyRegressOutcome, regress};
 use windfall_tables::surface::outcome::SurfaceOutcome;
 use windfall_tables::surface::request::SurfaceRequest;
 use windfall_tables::surface::run::surface;
+use windfall_tables::term_units::coefficient_unit;
 use windfall_workspace::campaign_view::name_of;
 
 /// Largest number of grid points along one factor.
@@ -126,6 +127,10 @@ pub(crate) struct SurfaceAnswer {
     outcome: SurfaceOutcome,
     /// Contour maps of the responses, where a grid was asked for.
     maps: Vec<ResponseMap>,
+    /// Units of the factors, in their order; blank where their names say none.
+    factor_units: Vec<String>,
+    /// Units of each response and of its coefficients in actual units.
+    units: Vec<TermUnits>,
     command: String,
 }
 
@@ -134,7 +139,36 @@ pub(crate) struct SurfaceAnswer {
 pub(crate) struct RegressAnswer {
     #[serde(flatten)]
     outcome: AnyRegressOutcome,
+    /// Unit of the response and units of the coefficients, in the order of `terms`; blank where
+    /// names of columns say none.
+    units: TermUnits,
     command: String,
+}
+
+/// Units of a model.
+#[derive(Debug, Serialize, ToSchema)]
+struct TermUnits {
+    /// Of the response.
+    response: String,
+    /// Of the coefficients.
+    terms: Vec<String>,
+}
+
+impl TermUnits {
+    fn of<'a>(response: &str, terms: impl Iterator<Item = &'a str>) -> Self {
+        Self {
+            response: coefficient_unit(response, "(Intercept)"),
+            terms: terms.map(|term| coefficient_unit(response, term)).collect(),
+        }
+    }
+
+    fn of_regression(outcome: &AnyRegressOutcome) -> Self {
+        let (response, terms) = match outcome {
+            AnyRegressOutcome::Linear(own) => (&own.response, &own.terms),
+            AnyRegressOutcome::Mixed(own) => (&own.response, &own.terms),
+        };
+        Self::of(response, terms.iter().map(|term| term.name.as_str()))
+    }
 }
 
 /// A table of a campaign.
@@ -206,8 +240,10 @@ pub(crate) async fn regression(
         let mut request = RegressRequest::usual(table, given.response, given.terms);
         request.random = given.random;
         request.select = given.select.then_some(Direction::Backward);
+        let outcome = regress(&request)?;
         Ok(RegressAnswer {
-            outcome: regress(&request)?,
+            units: TermUnits::of_regression(&outcome),
+            outcome,
             command,
         })
     })
@@ -269,7 +305,15 @@ fn fitted_surface(directory: &FilePath, given: SurfaceGiven) -> Result<SurfaceAn
         (Some(grid), Some(pair)) => response_maps(grid, pair, &names),
         _ => Vec::new(),
     };
+    let factors = outcome.factors.iter();
+    let models = outcome.responses.iter();
     Ok(SurfaceAnswer {
+        factor_units: factors
+            .map(|factor| coefficient_unit(&factor.name, "(Intercept)"))
+            .collect(),
+        units: models
+            .map(|own| TermUnits::of(&own.response, own.terms.iter().map(|t| t.name.as_str())))
+            .collect(),
         outcome,
         maps,
         command,

@@ -6,29 +6,30 @@ use crate::regress::means::outcome::{
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
 use windfall_files::text::columns::{Column, text_of_rows};
+use windfall_files::text::number::beside_sd;
 use windfall_files::text::statistic::{freedom, number, probability};
 use windfall_files::text::table::paragraph;
 
 const fn columns_of(title: &'static str) -> [Column<MeanOutcome>; 6] {
     [
         ("", |own| own.levels.join(" ")),
-        (title, |own| number(own.mean)),
+        (title, |own| beside_sd(own.mean, own.se)),
         ("se", |own| number(own.se)),
         ("df", |own| freedom(own.df)),
-        ("from", |own| number(own.low)),
-        ("to", |own| number(own.high)),
+        ("from", |own| beside_sd(own.low, own.se)),
+        ("to", |own| beside_sd(own.high, own.se)),
     ]
 }
 
 const DIFFERENCES: [Column<DifferenceOutcome>; 8] = [
     ("", |own| compared(own)),
-    ("difference", |own| number(own.difference)),
+    ("difference", |own| beside_sd(own.difference, own.se)),
     ("se", |own| number(own.se)),
     ("df", |own| freedom(own.df)),
     ("t", |own| number(own.t)),
     ("p", |own| probability(own.p)),
-    ("from", |own| number(own.low)),
-    ("to", |own| number(own.high)),
+    ("from", |own| beside_sd(own.low, own.se)),
+    ("to", |own| beside_sd(own.high, own.se)),
 ];
 
 const TESTS: [Column<EqualityOutcome>; 5] = [

@@ -3,7 +3,7 @@
 use crate::regress::run::RegressOutcome;
 use crate::regress::variances::outcome::{LevelVarianceOutcome, VariancesOutcome};
 use windfall_files::text::columns::{Column, text_of_rows};
-use windfall_files::text::statistic::{freedom, number, probability};
+use windfall_files::text::statistic::{chi_square, freedom, number, probability};
 use windfall_statistics::model::anova::AnovaRow;
 
 const LEVELS: [Column<LevelVarianceOutcome>; 6] = [
@@ -34,15 +34,13 @@ pub(crate) fn variances_text(outcome: &RegressOutcome, variances: &VariancesOutc
         .collect();
     format!(
         "\n\nResidual standard deviation by {} ({}):\n{}\n\
-         against one for all: χ² {} on {}, p {}\n\
+         against one for all: {}\n\
          log-likelihood {}, AIC {}, AICc {}, BIC {}\n\n\
          Tests of the terms, type {}, with Satterthwaite's degrees of freedom:\n{}\n",
         variances.by,
         variances.method,
         text_of_rows(&variances.levels, &LEVELS, &[0]),
-        number(test.statistic),
-        test.df,
-        probability(test.p),
+        chi_square(test.statistic, test.df as f64, Some(test.p)),
         number(quality.log_likelihood),
         number(quality.aic),
         number(quality.aicc),

@@ -35,7 +35,7 @@ export interface CampaignEntry {
   id: string; title: string; kind: string | null; recordings: number; run: RunView | null; problem: string | null;
 }
 export interface CampaignOutcome {
-  windfall: string; campaign: string; simulated: string | null; effective_mass: MassOutcome;
+  windfall: string; campaign: string; simulated: string | null; note: string | null; effective_mass: MassOutcome;
   bench: Record<string, PooledOutcome>; estimated: Record<string, BenchOutcome>; trends: TrendOutcome[];
   status: StatusOutcome; impacts: ImpactOutcome[]; failed: FailureOutcome[]; summary: Record<string, SpreadOutcome>;
   groups: GroupOutcome[]; joint: JointOutcome[]; findings: FindingOutcome[];
@@ -44,7 +44,7 @@ export interface CampaignView {
   id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
   rig_asked: string | null; channels: ChannelView[]; time: string | null; rate: string | null; laws: string[];
   options: FitOptionsView | null; group: string | null; specimens: TableView; impacts: TableView; text: string;
-  tables: string[]; report: boolean; command: string;
+  tables: string[]; report: boolean; command: string; note: string | null; undo: StepView | null; redo: StepView | null;
 }
 export interface CandidateOutcome {
   height: number; mass: number; fruit: string; impacts: number; drops: number; sds: (number | null)[];
@@ -139,6 +139,7 @@ export interface FeaturesOutcome {
   directions: DirectionOutcome[]; chi_square: number; freedom: number; p: number | null; widened: number;
   fitted: FittedFeature[]; along: AlongOutcome[]; converged: boolean; evaluations: number;
 }
+export interface FileBeside { file: string; now: string; before: string; }
 export interface FindingKind {
   code: string; severity: Severity; message: string; laws: string[]; impacts: string[]; of: number | null;
 }
@@ -213,6 +214,7 @@ export interface JointOutcome {
   correlations: Record<string, number>; common: Record<string, Record<string, number>>; chi_square: number;
   freedom: number; p: number; scale: number;
 }
+export interface KeptWork { time: string; stale: boolean; job: JobView; }
 export interface LackOfFitOutcome { lack: AnovaOutcome; pure_error: SumOfSquares; }
 export interface LawAbout { name: string; formula: string; parameters: ParameterAbout[]; notes: string; }
 export interface LawEvidenceOutcome {
@@ -255,9 +257,10 @@ export interface MeasuredItem {
   parameters: Record<string, MeasuredValue>; derived: Record<string, MeasuredValue>; findings: FindingOutcome[];
 }
 export interface MeasuredOutcome {
-  windfall: string; campaign: string; kind: string; simulated: string | null; status: StatusOutcome;
-  impacts: MeasuredItem[]; parts?: MeasuredItem[]; failed: FailureOutcome[]; specimens: MeasuredItem[];
-  whole: MeasuredItem[]; summary: Record<string, SpreadOutcome>; groups: MeasuredGroup[]; findings: FindingOutcome[];
+  windfall: string; campaign: string; kind: string; simulated: string | null; note: string | null;
+  status: StatusOutcome; impacts: MeasuredItem[]; parts?: MeasuredItem[]; failed: FailureOutcome[];
+  specimens: MeasuredItem[]; whole: MeasuredItem[]; summary: Record<string, SpreadOutcome>; groups: MeasuredGroup[];
+  findings: FindingOutcome[];
 }
 export interface MeasuredValue {
   value: number; sd: number | null; low: number | null; high: number | null; unit: string;
@@ -288,6 +291,7 @@ export interface ModelResiduals {
 export interface MomentumView { mass: MassOutcome | null; of_rig: number | null; }
 export interface NewCampaign { id: string; kind: string; }
 export interface NextOutcome { interest: string; now: (number | null)[]; candidates: CandidateOutcome[]; }
+export interface NoteGiven { impact?: string | null; note: string; }
 export interface OnScale { value: number | null; low: number | null; high: number | null; }
 export interface OptionsGiven {
   laws?: string[] | null; free?: string[] | null; quantities?: string[] | null; weights?: string | null;
@@ -368,7 +372,7 @@ export interface Refit {
   weights?: string | null; noise?: string | null; intervals?: string | null; onset?: string | null;
   initial_velocity?: string | null; displacement_offset?: string | null; end?: string | null; series?: boolean;
 }
-export type RegressAnswer = AnyRegressOutcome & { command: string; };
+export type RegressAnswer = AnyRegressOutcome & { units: TermUnits; command: string; };
 export interface RegressGiven {
   table: string; response: string; terms: string; random?: string[]; select?: boolean;
 }
@@ -444,11 +448,14 @@ export interface StatusOutcome { fitted: number; stored: number; failed: number;
 export interface StepOutcome {
   term: string; action: string; f: number | null; p: number | null; criterion: number | null; r2: number;
 }
+export interface StepView { words: string; time: string; }
 export interface StoredResults {
   outcome: AnyOutcome | null; findings: FindingKind[]; pending: number; time: string | null;
 }
 export interface SumOfSquares { ss: number | null; df: number | null; }
-export type SurfaceAnswer = SurfaceOutcome & { maps: ResponseMap[]; command: string; };
+export type SurfaceAnswer = SurfaceOutcome & {
+  maps: ResponseMap[]; factor_units: string[]; units: TermUnits[]; command: string;
+};
 export interface SurfaceGiven {
   table: string; factors: string[]; responses: ResponseGiven[]; goals?: string[]; hold?: string[];
   along?: string | null; members?: number; grid?: string | null; grid_points?: number;
@@ -476,6 +483,7 @@ export interface TermOutcome {
   term: string; estimate: number; se: number | null; t: number | null; p: number | null; low: number | null;
   high: number | null; df: number | null;
 }
+export interface TermUnits { response: string; terms: string[]; }
 export interface TestOutcome { test: string; statistic: number; p: number; }
 export interface TextGiven { text: string; }
 export interface TrendOutcome {
@@ -485,6 +493,7 @@ export interface TrendOutcome {
 export interface TwoStageOutcome {
   medians: RangeOutcome[]; between: RangeOutcome[]; correlations: number[]; effects: PopulationEffect[];
 }
+export interface UndoGiven { way: Way; }
 export interface Uploaded { file: string; bytes: number; sha256: string; recording: Inspection | null; }
 export interface VarianceOutcome {
   group: string; kind: string; of: string; value: number; low: number | null; high: number | null;
@@ -513,6 +522,7 @@ export interface WaveformOutcome {
 export interface WaveformParameter {
   name: string; value: MeasuredValue; sd_of_noise: number; per_millimetre: MeasuredValue | null;
 }
+export type Way = "undo" | "redo";
 export interface WeakOutcome { sd: number; shares: Record<string, number>; }
 export interface WholeModel { ss: number | null; df: number; f: number | null; p: number | null; }
 export interface WindowGiven { impact: string; from?: number | null; to?: number | null; }
@@ -540,8 +550,10 @@ export interface Calls {
   "PUT /api/campaigns/{id}/exclusion": Call<CampaignView, ExclusionGiven>;
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
+  "GET /api/campaigns/{id}/kept": Call<KeptWork[]>;
   "GET /api/campaigns/{id}/measured": Call<MeasuredView, undefined, { item?: string }>;
   "GET /api/campaigns/{id}/momentum": Call<MomentumView>;
+  "PUT /api/campaigns/{id}/note": Call<CampaignView, NoteGiven>;
   "PUT /api/campaigns/{id}/options": Call<CampaignView, OptionsGiven>;
   "GET /api/campaigns/{id}/outline": Call<Outline, undefined, { file: string; channel: string; from?: number; to?: number; points?: number }>;
   "PUT /api/campaigns/{id}/raw": Call<Uploaded, Blob, { file: string }>;
@@ -556,6 +568,8 @@ export interface Calls {
   "GET /api/campaigns/{id}/table": Call<DataTable, undefined, { file: string }>;
   "PUT /api/campaigns/{id}/table": Call<Uploaded, Blob, { file: string }>;
   "PUT /api/campaigns/{id}/text": Call<CampaignView, TextGiven>;
+  "GET /api/campaigns/{id}/undo": Call<FileBeside[], undefined, { way: Way }>;
+  "POST /api/campaigns/{id}/undo": Call<CampaignView, UndoGiven>;
   "PUT /api/campaigns/{id}/window": Call<CampaignView, WindowGiven>;
   "POST /api/contours": Call<ContourMap, GridGiven>;
   "GET /api/findings": Call<Explanation[]>;

@@ -1,4 +1,7 @@
-/** Numbers, units and names as people read them. */
+/** Numbers, probabilities and units as people read them, by the rule of
+ *  `crates/numerics/src/written.rs`; both are held to the cases of
+ *  `crates/files/src/text/number_cases.json`. The page differs in its typography alone: thin
+ *  spaces between thousands and a true minus sign. */
 
 import type { EstimateOutcome } from "../api/types";
 
@@ -16,54 +19,88 @@ const SUPERSCRIPTS: Record<string, string> = {
   "7": "⁷",
   "8": "⁸",
   "9": "⁹",
+  ".": "˙",
 };
+
+/** Digits of a number without deviation, and of a deviation. */
+const PLAIN_DIGITS = 4;
+const SD_DIGITS = 2;
+
+/** Powers of ten between which a number is written without one. */
+const LEAST_POWER = -4;
+const MOST_POWER = 6;
+
+/** Most decimals of a number. */
+const MOST_DECIMALS = 12;
+
+/** Moves a number by less than its rounding, so that halves round away from zero. */
+const HALVES = 1 + 1e-15;
 
 const superscript = (exponent: number) =>
   [...String(exponent)].map((character) => SUPERSCRIPTS[character] ?? character).join("");
 
-const exponentOf = (value: number) =>
-  value === 0 ? 0 : Math.floor(Math.log10(Math.abs(value)) + 1e-12);
+/** Power of ten of a number that is rounded to so many digits. */
+const powerOf = (value: number, digits: number) => Number((value * HALVES).toExponential(digits - 1).split("e")[1]);
 
-/** Decimals as written, with a real minus and thin spaces between thousands. */
-function plain(value: number, decimals: number): string {
-  const [whole = "", fraction] = Math.abs(value).toFixed(Math.min(Math.max(decimals, 0), 20)).split(".");
+/** So many decimals, with a true minus and thin spaces between thousands; below zero they are
+ *  whole digits that are rounded. */
+function fixed(value: number, decimals: number): string {
+  const unit = 10 ** -decimals;
+  const shown =
+    decimals >= 0
+      ? (Math.abs(value) * HALVES).toFixed(Math.min(decimals, MOST_DECIMALS))
+      : (Math.round(Math.abs(value) / unit) * unit).toFixed(0);
+  const [whole = "", fraction] = shown.split(".");
   const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, THIN) : whole;
   const text = fraction === undefined ? grouped : `${grouped}.${fraction}`;
   return value < 0 && /[1-9]/.test(text) ? MINUS + text : text;
 }
 
-/** A number with so many significant digits. */
-export function number(value: number | null | undefined, digits = 4): string {
+const isPlain = (power: number) => power >= LEAST_POWER && power <= MOST_POWER;
+
+/** A number with so many significant digits; whole ones have all of theirs. */
+export function number(value: number | null | undefined, digits = PLAIN_DIGITS): string {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : `${MINUS}∞`;
   if (value === 0) return "0";
-  const exponent = exponentOf(Number(value.toPrecision(digits)));
-  if (exponent < -4 || exponent > 7) {
-    const mantissa = value / 10 ** exponent;
-    return `${plain(mantissa, digits - 1)}·10${superscript(exponent)}`;
-  }
-  return plain(rounded(value, digits - 1 - exponent), digits - 1 - exponent);
+  const power = powerOf(value, digits);
+  if (!isPlain(power)) return `${fixed(value / 10 ** power, digits - 1)}·10${superscript(power)}`;
+  // Whole numbers are counts, or were typed.
+  if (Number.isInteger(value) && power >= digits) return fixed(value, 0);
+  return fixed(value, digits - 1 - power);
 }
 
 /** A whole number. */
-export const integer = (value: number) => plain(value, 0);
-
-const rounded = (value: number, decimals: number) =>
-  decimals >= 0 ? value : Math.round(value / 10 ** -decimals) * 10 ** -decimals;
+export const integer = (value: number) => fixed(value, 0);
 
 /** `value ± sd`, both to the second digit of the deviation. */
 export function plusMinus(value: number | null | undefined, sd: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  if (sd === null || sd === undefined || !Number.isFinite(sd) || sd <= 0) return number(value, 5);
-  const decimals = 1 - exponentOf(Number(sd.toPrecision(2)));
-  const exponent = exponentOf(Math.max(Math.abs(value), sd));
-  if (exponent < -4 || exponent > 7) {
-    const scale = 10 ** exponent;
-    const shown = Math.min(decimals + exponent, 15);
-    return `(${plain(value / scale, shown)} ± ${plain(sd / scale, shown)})·10${superscript(exponent)}`;
-  }
-  return `${plain(rounded(value, decimals), decimals)} ± ${plain(rounded(sd, decimals), decimals)}`;
+  if (sd === null || sd === undefined || !Number.isFinite(sd) || sd <= 0) return number(value);
+  const decimals = SD_DIGITS - 1 - powerOf(sd, SD_DIGITS);
+  const power = powerOf(Math.max(Math.abs(value), sd), PLAIN_DIGITS);
+  if (isPlain(power)) return `${fixed(value, decimals)} ± ${fixed(sd, decimals)}`;
+  const shown = (size: number) => fixed(size / 10 ** power, decimals + power);
+  return `(${shown(value)} ± ${shown(sd)})·10${superscript(power)}`;
 }
+
+/** A probability as a number alone: "0.034", "< 0.001". */
+export const probability = (p: number | null | undefined): string =>
+  p === null || p === undefined || Number.isNaN(p) ? "–" : p < 0.001 ? "< 0.001" : fixed(p, 3);
+
+/** A probability with its symbol: "p = 0.034", "p < 0.001". */
+export const pValue = (p: number | null | undefined): string => {
+  const text = probability(p);
+  return text.startsWith("<") ? `p ${text}` : `p = ${text}`;
+};
+
+/** Degrees of freedom: whole ones without decimals. */
+export const degrees = (df: number | null | undefined): string =>
+  df !== null && df !== undefined && Number.isInteger(df) ? String(df) : number(df);
+
+/** A chi-square with its degrees of freedom and, where it is known, its probability. */
+export const chiSquare = (statistic: number, df: number, p: number | null = null): string =>
+  `χ²(${degrees(df)}) = ${number(statistic)}${p === null ? "" : `, ${pValue(p)}`}`;
 
 /** `value ± sd unit` of an estimate; a held one says so. */
 export function estimate(of: EstimateOutcome): string {
@@ -83,7 +120,7 @@ export function interval(of: EstimateOutcome): string {
   // Enough digits to show its width.
   const width = Math.abs(of.high - of.low);
   const size = Math.max(Math.abs(of.low), Math.abs(of.high));
-  const digits = width > 0 ? exponentOf(size) - exponentOf(width) + 3 : 5;
+  const digits = width > 0 ? powerOf(size, PLAIN_DIGITS) - powerOf(width, SD_DIGITS) + 3 : 5;
   const shown = Math.min(Math.max(digits, 3), 10);
   return `${number(of.low, shown)} … ${number(of.high, shown)}`;
 }
@@ -96,12 +133,9 @@ export const percent = (part: number | null | undefined, digits = 2) =>
 export const withUnit = (words: string, unit: string) =>
   words === "–" || unit === "" || unit === "1" ? words : `${words}${THIN}${unitText(unit)}`;
 
-/** Units with raised whole exponents; others stay as they are typed, `m^1.5`, and an
- *  estimated one has as many digits as one reads. */
-export function unitText(unit: string): string {
-  const short = unit.replace(/\^(-?\d+\.\d{4,})/g, (_, exponent: string) => `^${Number(Number(exponent).toPrecision(4))}`);
-  return short.replace(/\^(-?\d+)(?![\d.])/g, (_, exponent: string) => superscript(Number(exponent)));
-}
+/** A unit with raised exponents, of four digits at the most: "N/m¹˙⁵", "m/s²". */
+export const unitText = (unit: string): string =>
+  unit.replace(/\^(-?\d+(?:\.\d+)?)/g, (_, exponent: string) => superscript(Number(Number(exponent).toFixed(3))));
 
 const PREFIXES: [number, string][] = [
   [1e9, "G"],
@@ -155,4 +189,4 @@ export function moment(time: string): string {
     : date.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 }
 
-export const count = (n: number, one: string, many = `${one}s`) => `${plain(n, 0)} ${n === 1 ? one : many}`;
+export const count = (n: number, one: string, many = `${one}s`) => `${integer(n)} ${n === 1 ? one : many}`;

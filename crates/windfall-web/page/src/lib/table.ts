@@ -260,7 +260,19 @@ export function described(rows: Row[], key: string): Described {
 }
 
 /** Rows as CSV with all digits; units stand in the header, uncertainties beside values. */
-export function csvOf(columns: Column[], rows: Row[]): string {
+export const csvOf = (columns: Column[], rows: Row[]): string =>
+  linesOf(columns, rows).map((line) => line.map(quoted).join(",")).join("\r\n") + "\r\n";
+
+/** The same with tabs between cells, for the clipboard. */
+export const tabbed = (columns: Column[], rows: Row[]): string => {
+  const cell = (of: Cell) => {
+    const text = String(of ?? "").replace(/\s+/g, " ");
+    return typeof of !== "number" && isFormula(text) ? `'${text}` : text;
+  };
+  return linesOf(columns, rows).map((line) => line.map(cell).join("\t")).join("\n");
+};
+
+function linesOf(columns: Column[], rows: Row[]): Cell[][] {
   const parts = columns.map((column) => ({
     column,
     spread: rows.some((row) => row.spreads.has(column.key)),
@@ -277,7 +289,7 @@ export function csvOf(columns: Column[], rows: Row[]): string {
       return spread ? [cell, own?.sd ?? "", ...(own?.interval ?? ["", ""])] : [cell];
     }),
   );
-  return [header, ...lines].map((line) => line.map(quoted).join(",")).join("\r\n") + "\r\n";
+  return [header, ...lines];
 }
 
 /** A cell as the program writes it: with an apostrophe before what a spreadsheet would
@@ -291,7 +303,7 @@ function quoted(cell: Cell): string {
 
 /** Whether a cell is a formula for a spreadsheet, or a formula behind apostrophes. The
  *  program has the same in formats/src/text/spreadsheet.rs. */
-function isFormula(cell: string): boolean {
+export function isFormula(cell: string): boolean {
   const end = cell.replace(/\p{White_Space}+$/u, "");
   const rest = end.replace(/^['\p{White_Space}]+/u, "");
   const before = end.slice(0, end.length - rest.length);

@@ -41,6 +41,9 @@ export function optionsOf(link: { hooks: Hooks | null }, { width, height, bare, 
     return [min, max];
   };
   const labels = (of: "x" | "y") => (_: uPlot, splits: number[]) => link.hooks?.labels(of, splits) ?? [];
+  // Steps are up to 2.5 times as far apart as asked for; three of them are to fit.
+  const apart = (least: number, usual: number) => (_of: uPlot, _axis: number, _min: number, _max: number, size: number) =>
+    Math.max(least, Math.min(usual, size / 7.5));
   return {
     width: Math.max(width, 50),
     height,
@@ -53,8 +56,8 @@ export function optionsOf(link: { hooks: Hooks | null }, { width, height, bare, 
     scales: { x: { time: false, range: range("x") }, y: { range: range("y") } },
     series: [{}, { paths: () => null, points: { show: false } }],
     axes: [
-      { ...axis, size: bare ? 30 : 34, ...(bare ? {} : { label: "x", labelSize: 18 }), values: labels("x") },
-      { ...axis, size: 52, label: "y", labelSize: 18, space: 34, values: labels("y") },
+      { ...axis, size: bare ? 30 : 34, space: apart(38, 50), ...(bare ? {} : { label: "x", labelSize: 18 }), values: labels("x") },
+      { ...axis, size: 52, label: "y", labelSize: 18, space: apart(15, 34), values: labels("y") },
     ],
     padding: [8, 14, 0, 0],
     hooks: {

@@ -75,11 +75,20 @@ function roundStep(width: number, count: number): number {
   return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
 }
 
-/** Values for ticks within a domain, about `count` of them. */
+/** Fewest ticks of an axis: two could not be told from those of a logarithm. */
+const FEWEST = 3;
+
+/** Values for ticks within a domain, about `count` of them and at least three. */
 export function ticks(scale: Scale, count: number): number[] {
   const [low, high] = scale.domain;
   if (!(high > low) || !Number.isFinite(high - low)) return [];
-  return scale.kind === "log" ? logTicks(low, high, count) : linearTicks(low, high, count);
+  // A part of a decade has too few round powers.
+  const isLog = scale.kind === "log" && logTicks(low, high, count + 8).length >= FEWEST;
+  const of = isLog ? logTicks : linearTicks;
+  // More are asked for until there are enough; steps grow finer by half at the most.
+  let found = of(low, high, count);
+  for (let more = count + 1; found.length < FEWEST && more <= count + 8; more += 1) found = of(low, high, more);
+  return found;
 }
 
 function linearTicks(low: number, high: number, count: number): number[] {
