@@ -47,7 +47,7 @@ pub fn message_shown(text: &str) -> String {
     }
 }
 
-/// Heads of tables bold, the lines below them faint, codes of findings yellow.
+/// Heads of tables bold, the lines below them faint, findings in the colour of their severity.
 fn coloured(text: &str) -> String {
     let is_rule = |line: &str| !line.is_empty() && line.chars().all(|c| c == '─');
     let lines: Vec<&str> = text.split('\n').collect();
@@ -64,11 +64,20 @@ fn coloured(text: &str) -> String {
         match code.and_then(|rest| rest.split_once(':')) {
             _ if *line == "Findings:" || heads => format!("{BOLD}{line}{END}"),
             _ if is_rule(line) => format!("{FAINT}{line}{END}"),
-            Some((code, rest)) if found => format!("  {YELLOW}{code}{END}:{rest}"),
+            Some((code, rest)) if found => format!("  {}{code}{END}:{rest}", colour_of(code)),
             _ => (*line).to_owned(),
         }
     });
     dressed.collect::<Vec<_>>().join("\n")
+}
+
+/// Colour of a finding that begins with its severity: "[wrong] clipped".
+fn colour_of(code: &str) -> &'static str {
+    match code {
+        code if code.starts_with("[wrong]") => RED,
+        code if code.starts_with("[note]") => FAINT,
+        _ => YELLOW,
+    }
 }
 
 #[cfg(test)]
@@ -77,9 +86,9 @@ mod tests {
 
     #[test]
     fn closed_form_heads_and_findings_stand_out() {
-        let text = "apples\n\nid   k\n──────\na   12\n\nFindings:\n  misfit: too large\n    more\n\nNext:\n  fit: it\n";
+        let text = "apples\n\nid   k\n──────\na   12\n\nFindings:\n  [wrong] clipped: it is\n  [doubtful] misfit: too large\n    more\n\nNext:\n  fit: it\n";
         let expected = "apples\n\n\x1b[1mid   k\x1b[0m\n\x1b[2m──────\x1b[0m\na   12\n\n\
-                        \x1b[1mFindings:\x1b[0m\n  \x1b[33mmisfit\x1b[0m: too large\n    more\n\n\
+                        \x1b[1mFindings:\x1b[0m\n  \x1b[31m[wrong] clipped\x1b[0m: it is\n  \x1b[33m[doubtful] misfit\x1b[0m: too large\n    more\n\n\
                         Next:\n  fit: it\n";
         assert_eq!(coloured(text), expected);
         // Tests have no terminal.
