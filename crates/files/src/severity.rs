@@ -2,6 +2,8 @@
 //! be doubted, and which only tell how it came about.
 
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// How grave a finding is, the gravest first.
 #[derive(
@@ -35,13 +37,18 @@ impl Severity {
 
 /// Severity of the findings of a code, where the code is known.
 fn known(code: &str) -> Option<Severity> {
-    let lists = [
-        (WRONG, Severity::Wrong),
-        (DOUBTFUL, Severity::Doubtful),
-        (NOTES, Severity::Note),
-    ];
-    let mut holding = lists.into_iter().filter(|(codes, _)| codes.contains(&code));
-    holding.next().map(|(_, severity)| severity)
+    static KNOWN: LazyLock<HashMap<&str, Severity>> = LazyLock::new(|| {
+        let lists = [
+            (WRONG, Severity::Wrong),
+            (DOUBTFUL, Severity::Doubtful),
+            (NOTES, Severity::Note),
+        ];
+        let all = lists
+            .iter()
+            .flat_map(|(codes, own)| codes.iter().map(|code| (*code, *own)));
+        all.collect()
+    });
+    KNOWN.get(code).copied()
 }
 
 /// Codes of findings that say: do not use the number.

@@ -132,6 +132,9 @@ mod tests {
         };
         assert_eq!(clipped.severity, Severity::Wrong);
         assert!(clipped.meaning.starts_with("Samples are"), "{clipped:?}");
-        assert!(text_of_explanations(&[clipped.clone()]).contains("[wrong] clipped: Samples"));
+        assert!(
+            text_of_explanations(std::slice::from_ref(clipped))
+                .contains("[wrong] clipped: Samples")
+        );
     }
 }

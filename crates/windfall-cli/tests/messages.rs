@@ -13,7 +13,7 @@ use windfall_cards::user_laws::read::read_laws;
 use windfall_files::error::Error;
 use windfall_scene_run::file::read::read_scene;
 use windfall_scene_run::study::run::{StudyRequest, run_study};
-use windfall_workspace::campaign_view::check_campaign;
+use windfall_workspace::campaign_files::check_campaign;
 
 /// Values that no key takes: of another type, no number, beyond all that numbers can be.
 const WRONG: [&str; 9] = [
@@ -32,8 +32,9 @@ const WRONG: [&str; 9] = [
 const NEGATIVE: &str = "-9223372036854775808";
 
 /// Keys that take any text, or true.
-const FREE: [&str; 25] = [
+const FREE: [&str; 26] = [
     "title",
+    "note",
     "simulated",
     "directory",
     "time",

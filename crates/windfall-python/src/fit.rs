@@ -84,7 +84,7 @@ impl Fitted {
 
     /// What `windfall fit --detail` would write of a law, as JSON.
     fn detail(&self, py: Python<'_>, place: usize) -> PyResult<String> {
-        let law = self.fit(place)?.law.clone();
+        let law = self.fit(place)?.law;
         let fitted = Arc::clone(&self.fitted);
         let detail = beside(py, None, move |_| fitted.detail(&law))?;
         detail

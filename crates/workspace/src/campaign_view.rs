@@ -1,6 +1,6 @@
 //! A campaign as the page shows it, whatever it measures.
 
-use crate::campaign_files::{CAMPAIGN_FILES, campaign_version};
+use crate::campaign_files::{CAMPAIGN_FILES, campaign_version, read_any};
 use crate::rig_form::rig_to_be_given;
 use crate::undo::{History, StepView};
 use serde::Serialize;
@@ -8,10 +8,8 @@ use std::path::Path;
 use std::time::SystemTime;
 use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::settings::fit::{ENDS, INTERVALS, NOISES, TREATMENTS, WEIGHTS};
-use windfall_campaign::settings::kind::campaign_kind;
 use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
-use windfall_campaign::settings::model::{Campaign, FilePlan, ImpactCampaign};
-use windfall_campaign::settings::read::read_campaign;
+use windfall_campaign::settings::model::ImpactCampaign;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
 use windfall_files::inputs::check_regular;
@@ -20,7 +18,6 @@ use windfall_files::option_value::word_of;
 use windfall_files::text::quote::{command, path_word};
 use windfall_files::write_file::sweep;
 use windfall_identify::fit::problem::FitOptions;
-use windfall_report::fit_any::measurement_of;
 use windfall_report::run::REPORT_DIRECTORY;
 use windfall_report::stored_card::CARD_FILE;
 
@@ -120,15 +117,6 @@ pub struct CampaignView {
     pub redo: Option<StepView>,
 }
 
-/// A campaign of any kind: what all kinds share, and what only impacts have.
-pub(crate) fn read_any(directory: &Path) -> Result<(Campaign, Option<ImpactCampaign>), Error> {
-    if let Some(measurement) = measurement_of(campaign_kind(directory)?) {
-        return Ok(((measurement.read)(directory)?, None));
-    }
-    let campaign = read_campaign(directory)?;
-    Ok((campaign.shared.clone(), Some(campaign)))
-}
-
 /// Checks that the own files of a campaign lie in its directory.
 ///
 /// # Errors
@@ -149,22 +137,6 @@ pub fn check_confined(directory: &Path) -> Result<(), Error> {
 /// Results would be written through a symbolic link.
 pub fn check_work(directory: &Path) -> Result<(), Error> {
     path_inside(directory, &format!("{REPORT_DIRECTORY}/figures")).map(|_| ())
-}
-
-/// Whether the files of a campaign say what they must.
-///
-/// # Errors
-/// What they do not.
-pub fn check_campaign(directory: &Path) -> Result<(), Error> {
-    read_any(directory).map(|_| ())
-}
-
-/// Where the recordings of a campaign are, and how its files are read.
-///
-/// # Errors
-/// The campaign cannot be read.
-pub fn file_plan_of(directory: &Path) -> Result<FilePlan, Error> {
-    read_any(directory).map(|(campaign, _)| campaign.files)
 }
 
 /// What the files of a campaign say.

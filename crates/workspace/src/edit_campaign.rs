@@ -2,17 +2,15 @@
 //! campaign is checked before it replaces the old one, and a change based on an outdated
 //! version is refused.
 
-use crate::campaign_files::CAMPAIGN_FILES;
-use crate::campaign_view::{
-    CampaignView, check_campaign, file_plan_of, signed_unit, view_campaign,
-};
+use crate::campaign_files::check_changed;
+use crate::campaign_view::{CampaignView, signed_unit, view_campaign};
 use crate::undo::{Way, check_version, keep_before, step};
 use crate::workspace::recordings_inside;
 use itertools::Itertools;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::{Component, Path};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 use windfall_campaign::recording::digests::campaign_text;
@@ -25,7 +23,6 @@ use windfall_campaign::settings::template::is_template_file;
 use windfall_files::confined::path_inside;
 use windfall_files::error::{Error, Place};
 use windfall_files::option_value::unusable;
-use windfall_files::scratch::Scratch;
 use windfall_files::table::data::EXCLUDE_COLUMN;
 use windfall_files::text::column_role::unit_of;
 use windfall_files::write_file::replace_file;
@@ -456,54 +453,6 @@ fn new_impacts(directory: &Path, rows: &[NewImpact]) -> Result<Vec<(&'static str
     }
     files.push(("impacts.csv", impacts));
     Ok(files)
-}
-
-/// Reads the campaign as it will be, beside the one that is there.
-fn check_changed(directory: &Path, files: &[(&'static str, String)]) -> Result<(), Error> {
-    let scratch = Scratch::temporary()?;
-    let failed = |source| Error::access(directory, "check", source);
-    for (name, text) in files {
-        let written = scratch.write(Path::new(name), text.as_bytes());
-        written.map_err(failed)?;
-    }
-    // The rest as it is: laws may be tables in files of their own.
-    for entry in std::fs::read_dir(directory).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        let name = entry.file_name();
-        let name = Path::new(&name);
-        let there = scratch.path().join(name).exists();
-        let own = CAMPAIGN_FILES.iter().any(|known| name == Path::new(known));
-        let plain = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if !there && (own || plain && small(&entry)) {
-            let bytes = std::fs::read(entry.path()).map_err(failed)?;
-            scratch.write(name, &bytes).map_err(failed)?;
-        }
-    }
-    let own = format!("{}/", scratch.path().display());
-    check_campaign(scratch.path()).map_err(|error| Error::ChangeRefused {
-        problem: error.to_string().replace(&own, ""),
-    })?;
-    stays_inside(directory, scratch.path())
-}
-
-/// Refuses a change that makes the campaign read files elsewhere, unless it did before.
-fn stays_inside(directory: &Path, changed: &Path) -> Result<(), Error> {
-    let new = file_plan_of(changed)?.directory;
-    let plain = |path: &Path| path.components().all(|c| c != Component::ParentDir);
-    let same = file_plan_of(directory).is_ok_and(|old| old.directory == new);
-    match same || (plain(&new) && new.starts_with(changed)) {
-        true => Ok(()),
-        false => Err(Error::ChangeRefused {
-            problem: "[files] directory must lie in the directory of the campaign; another one \
-                      can be given with an editor"
-                .to_owned(),
-        }),
-    }
-}
-
-/// Whether a file may be a table of a law.
-fn small(entry: &std::fs::DirEntry) -> bool {
-    entry.metadata().is_ok_and(|data| data.len() < 1 << 20)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! with what they were made of, so that the page shows them again at once.
 
 use crate::campaign_files::campaign_version;
-use crate::campaign_view::read_any;
+use crate::campaign_files::read_any;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::Path;

@@ -3,7 +3,7 @@
 //! Keys and their meanings are those of the schema of campaign.toml, their order and typical
 //! values those of the commented template.
 
-use crate::campaign_view::check_campaign;
+use crate::campaign_files::check_campaign;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;

@@ -131,6 +131,10 @@ impl History {
     fn write(&mut self, directory: &Path) -> Result<(), Error> {
         self.bound();
         let path = directory.join(UNDO_FILE);
+        let held = std::fs::read(&path);
+        if held.is_ok_and(|held| serde_json::from_slice::<Self>(&held).is_err()) {
+            return Ok(()); // somebody's file of that name: it stays, and nothing can be undone
+        }
         let text = serde_json::to_string_pretty(self).map_err(|error| {
             Error::access(&path, "write", std::io::Error::other(error.to_string()))
         })?;
@@ -355,6 +359,19 @@ mod tests {
         std::fs::write(&path, own).unwrap();
         undo_change(&directory, "*", Way::Undo).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), TABLE);
+    }
+
+    #[test]
+    fn a_file_of_that_name_that_is_no_history_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = campaign(folder.path());
+        let path = directory.join(UNDO_FILE);
+        for own in [&b"{\"steps\": 3}"[..], b"\xff\xfe", b""] {
+            std::fs::write(&path, own).unwrap();
+            let view = change_campaign(&directory, "*", &excluded("a")).unwrap();
+            assert_eq!(view.undo, None);
+            assert_eq!(std::fs::read(&path).unwrap(), own);
+        }
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //! state.
 
 use crate::campaign_files::CAMPAIGN_FILES;
-use crate::campaign_view::{check_confined, file_plan_of, name_of, names_in, view_campaign};
+use crate::campaign_files::file_plan_of;
+use crate::campaign_view::{check_confined, name_of, names_in, view_campaign};
 use itertools::Itertools;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
