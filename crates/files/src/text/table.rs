@@ -209,7 +209,7 @@ pub fn findings_list(findings: &[FindingOutcome]) -> String {
     format!("\nFindings:\n{}", lines.collect::<String>())
 }
 
-/// A line for each finding, the gravest first: "[wrong] clipped: …".
+/// A line for each finding, the gravest first: `[wrong] clipped: …`.
 pub fn finding_lines(findings: &[FindingOutcome]) -> impl Iterator<Item = String> {
     let sorted = findings.iter().sorted_by_key(|finding| finding.severity);
     sorted.map(|finding| {
