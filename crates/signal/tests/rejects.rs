@@ -277,7 +277,7 @@ fn rejects_silence_about_irregular_sampling() {
             &ExtractOptions::default(),
             "irregular-sampling"
         ),
-        "channel 'the force' is sampled irregularly: the interval departs by up to 2.000e-4 s from its median of 1.000e-3 s, most at 0.069 s; the recorded times are used as they are"
+        "channel 'the force' is sampled irregularly: the interval departs by up to 0.0002000 s from its median of 0.001000 s, most at 0.069 s; the recorded times are used as they are"
     );
 }
 

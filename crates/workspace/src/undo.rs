@@ -283,7 +283,7 @@ mod tests {
         let directory = folder.join("campaign");
         write_template(TemplateKind::Carriage, &directory).unwrap();
         std::fs::write(directory.join("impacts.csv"), TABLE).unwrap();
-        std::fs::write(directory.join("specimens.csv"), "id\nf1\n").unwrap();
+        std::fs::write(directory.join("specimens.csv"), "id,variety\nf1,gala\n").unwrap();
         directory
     }
 
