@@ -292,9 +292,11 @@ test("the window goes by keys too, is saved, and found by the command line", asy
   const json = JSON.parse(await windfall("fit", join(place.directory, "apples"), "--format", "json"));
   assert.equal(json.impacts.length, 6);
   // What is not saved is kept while one looks at another impact.
-  await handle.focus();
-  await page.keyboard.press("ArrowLeft");
+  const saved = await handle.getAttribute("aria-valuenow");
+  await page.waitForLoadState("networkidle"); // what the command wrote has arrived
+  await handle.press("ArrowLeft");
   const unsaved = await handle.getAttribute("aria-valuenow");
+  assert.notEqual(unsaved, saved);
   await page.getByRole("heading", { level: 1 }).click();
   await page.keyboard.press("n");
   await title("Impact specimen-03");
