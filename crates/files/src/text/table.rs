@@ -134,15 +134,18 @@ pub fn header_of(words: &[&str]) -> Vec<String> {
 /// First lines of results: the campaign, that its recordings are simulated, a remark on it.
 pub fn title_lines(campaign: &str, simulated: Option<&str>, note: Option<&str>) -> String {
     let label = simulated.map(|label| format!("SIMULATED recordings: {label}"));
-    let note = note.map(|note| {
-        format!(
-            "Note: {}",
-            note.split_whitespace().collect::<Vec<_>>().join(" ")
-        )
-    });
+    let note = note.map(|note| format!("Note: {note}"));
     let lines = [Some(campaign), label.as_deref(), note.as_deref()];
     let lines = lines.into_iter().flatten();
-    lines.map(|line| paragraph(line, 2) + "\n").collect()
+    lines
+        .map(|line| paragraph(&one_line(line), 2) + "\n")
+        .collect()
+}
+
+/// What somebody wrote as one line, without what would steer a terminal.
+fn one_line(text: &str) -> String {
+    let words = text.split(|c: char| c.is_whitespace() || c.is_control());
+    words.filter(|word| !word.is_empty()).join(" ")
 }
 
 /// The message of the first of several impacts that say the same, with how many do and who
@@ -235,6 +238,12 @@ mod tests {
         assert!(text.lines().all(|line| line.chars().count() <= PAGE));
         assert_eq!(text.matches("first").count(), 2);
         assert_eq!(text.matches(&wide).count(), 3);
+    }
+
+    #[test]
+    fn rejects_what_would_steer_a_terminal_in_titles_and_notes() {
+        let lines = title_lines("apples \u{1b}[31mof 2003", None, Some("wet\nat\u{7} night"));
+        assert_eq!(lines, "apples [31mof 2003\nNote: wet at night\n");
     }
 
     #[test]
