@@ -198,6 +198,13 @@ impl Stepped {
 /// its files is no longer what it made of it.
 pub(crate) fn step(directory: &Path, way: Way) -> Result<Stepped, Error> {
     let mut history = History::read(directory);
+    // One that was kept by a program that was killed before it wrote anything.
+    let never = |step: &mut Step| {
+        let mut files = step.files.iter();
+        files.all(|kept| text_of(directory, &kept.file).is_ok_and(|now| now == kept.before))
+    };
+    let steps = history.steps(way);
+    while steps.pop_if(never).is_some() {}
     let Some(step) = history.steps(way).pop() else {
         return Err(Error::ChangeRefused {
             problem: match way {
@@ -359,6 +366,18 @@ mod tests {
         std::fs::write(&path, own).unwrap();
         undo_change(&directory, "*", Way::Undo).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), TABLE);
+    }
+
+    #[test]
+    fn a_change_that_was_kept_and_never_made_does_not_stand_in_the_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = campaign(folder.path());
+        change_campaign(&directory, "*", &excluded("a")).unwrap();
+        let killed = [("impacts.csv", "id,specimen,file\n".to_owned())];
+        keep_before(&directory, "added a".to_owned(), &killed).unwrap();
+        undo_change(&directory, "*", Way::Undo).unwrap();
+        let table = std::fs::read_to_string(directory.join("impacts.csv")).unwrap();
+        assert_eq!(table, TABLE);
     }
 
     #[test]
