@@ -79,7 +79,8 @@ pub struct FileBeside {
 }
 
 impl History {
-    /// That of a campaign; what cannot be read as one is none.
+    /// That of a campaign, without changes that would change nothing; what cannot be read as one
+    /// is none.
     pub(crate) fn read(directory: &Path) -> Self {
         let text = std::fs::read_to_string(directory.join(UNDO_FILE)).unwrap_or_default();
         let mut history: Self = serde_json::from_str(&text).unwrap_or_default();
@@ -90,6 +91,13 @@ impl History {
         };
         history.done.retain(own);
         history.undone.retain(own);
+        // One that was kept by a program that was killed before it wrote anything.
+        let never = |step: &mut Step| {
+            let mut files = step.files.iter();
+            files.all(|kept| text_of(directory, &kept.file).is_ok_and(|now| now == kept.before))
+        };
+        while history.done.pop_if(never).is_some() {}
+        while history.undone.pop_if(never).is_some() {}
         history
     }
 
@@ -110,6 +118,30 @@ impl History {
             Way::Undo => &mut self.done,
             Way::Redo => &mut self.undone,
         }
+    }
+
+    /// Takes out the newest change if a program was killed while it made it: the files that it
+    /// wrote. They are undone together with the change that comes next.
+    fn take_half_made(&mut self, directory: &Path) -> Result<Vec<Kept>, Error> {
+        let Some(step) = self.done.last() else {
+            return Ok(Vec::new());
+        };
+        let mut wrote = Vec::new();
+        for kept in &step.files {
+            let now = text_of(directory, &kept.file)?;
+            if now == kept.before {
+                continue;
+            }
+            if digest_text(&now) != kept.after {
+                return Ok(Vec::new()); // changed since
+            }
+            wrote.push(kept.clone());
+        }
+        if wrote.len() == step.files.len() {
+            return Ok(Vec::new());
+        }
+        self.done.pop();
+        Ok(wrote)
     }
 
     /// Drops the oldest changes where there are too many.
@@ -154,15 +186,26 @@ pub(crate) fn keep_before(
     words: String,
     files: &[(&'static str, String)],
 ) -> Result<(), Error> {
-    let mut kept = Vec::new();
-    for (name, after) in files {
-        kept.push(Kept {
-            file: (*name).to_owned(),
-            after: digest_text(after),
-            before: text_of(directory, name)?,
-        });
-    }
     let mut history = History::read(directory);
+    let mut kept = history.take_half_made(directory)?;
+    for (name, after) in files {
+        let after = digest_text(after);
+        if let Some(half) = kept.iter_mut().find(|half| half.file == *name) {
+            half.after = after;
+            continue;
+        }
+        let before = text_of(directory, name)?;
+        if after != digest_text(&before) {
+            kept.push(Kept {
+                file: (*name).to_owned(),
+                after,
+                before,
+            });
+        }
+    }
+    if kept.is_empty() {
+        return Ok(()); // nothing changes
+    }
     history.undone.clear();
     history.done.push(Step {
         words,
@@ -198,13 +241,6 @@ impl Stepped {
 /// its files is no longer what it made of it.
 pub(crate) fn step(directory: &Path, way: Way) -> Result<Stepped, Error> {
     let mut history = History::read(directory);
-    // One that was kept by a program that was killed before it wrote anything.
-    let never = |step: &mut Step| {
-        let mut files = step.files.iter();
-        files.all(|kept| text_of(directory, &kept.file).is_ok_and(|now| now == kept.before))
-    };
-    let steps = history.steps(way);
-    while steps.pop_if(never).is_some() {}
     let Some(step) = history.steps(way).pop() else {
         return Err(Error::ChangeRefused {
             problem: match way {
@@ -217,6 +253,9 @@ pub(crate) fn step(directory: &Path, way: Way) -> Result<Stepped, Error> {
     let mut back = Vec::new();
     for kept in step.files {
         let now = text_of(directory, &kept.file)?;
+        if now == kept.before {
+            continue; // the program was killed before it wrote this one
+        }
         if digest_text(&now) != kept.after {
             return Err(Error::ChangedSince {
                 file: kept.file,
@@ -375,9 +414,49 @@ mod tests {
         change_campaign(&directory, "*", &excluded("a")).unwrap();
         let killed = [("impacts.csv", "id,specimen,file\n".to_owned())];
         keep_before(&directory, "added a".to_owned(), &killed).unwrap();
-        undo_change(&directory, "*", Way::Undo).unwrap();
+        let (undo, redo) = History::read(&directory).views();
+        assert_eq!((undo.unwrap().words.as_str(), redo), ("excluded a", None));
+        // Made after all, it is one change, and no other comes of saving the same again.
+        for _ in 0..2 {
+            change_campaign(&directory, "*", &excluded("b")).unwrap();
+        }
+        for _ in 0..2 {
+            undo_change(&directory, "*", Way::Undo).unwrap();
+        }
         let table = std::fs::read_to_string(directory.join("impacts.csv")).unwrap();
         assert_eq!(table, TABLE);
+        assert!(undo_change(&directory, "*", Way::Undo).is_err());
+    }
+
+    #[test]
+    fn a_change_that_was_half_made_is_undone_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = campaign(folder.path());
+        let read = |name| std::fs::read_to_string(directory.join(name)).unwrap();
+        let specimens = read("specimens.csv");
+        let half = || {
+            let both = [
+                ("specimens.csv", format!("{specimens}f2,gala\n")),
+                ("impacts.csv", format!("{TABLE}c,f2,c.csv\n")),
+            ];
+            keep_before(&directory, "added c".to_owned(), &both).unwrap();
+            std::fs::write(directory.join("specimens.csv"), &both[0].1).unwrap();
+        };
+        half();
+        undo_change(&directory, "*", Way::Undo).unwrap();
+        assert_eq!(
+            (read("specimens.csv"), read("impacts.csv").as_str()),
+            (specimens.clone(), TABLE)
+        );
+        // A change after it takes what was written with it.
+        half();
+        change_campaign(&directory, "*", &excluded("a")).unwrap();
+        undo_change(&directory, "*", Way::Undo).unwrap();
+        assert_eq!(
+            (read("specimens.csv"), read("impacts.csv").as_str()),
+            (specimens.clone(), TABLE)
+        );
+        assert!(undo_change(&directory, "*", Way::Undo).is_err());
     }
 
     #[test]
