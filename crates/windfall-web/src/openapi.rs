@@ -35,6 +35,7 @@ use utoipa::{Modify, OpenApi};
         crate::api::recordings::upload_recording,
         crate::api::recordings::upload_table,
         crate::api::live::refit,
+        crate::api::live::figure,
         crate::api::changes::text,
         crate::api::changes::window,
         crate::api::changes::exclusion,

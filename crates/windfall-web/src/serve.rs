@@ -193,6 +193,7 @@ fn routes(app: App, guard: Arc<Guard>) -> Router {
                 .layer(DefaultBodyLimit::disable()),
         )
         .route("/refit", post(live::refit))
+        .route("/figure", post(live::figure))
         .route("/text", put(changes::text))
         .route("/window", put(changes::window))
         .route("/exclusion", put(changes::exclusion))

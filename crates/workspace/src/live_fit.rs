@@ -7,7 +7,9 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use windfall_campaign::impacts::bench::find_rig;
-use windfall_campaign::impacts::figure_impact::{FittedImpact, line_of_law, motion_at, shown_rate};
+use windfall_campaign::impacts::figure_impact::{
+    FittedImpact, figure_of_impact, line_of_law, motion_at, shown_rate,
+};
 use windfall_campaign::impacts::fit::{fit_law, law_problem};
 use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
@@ -16,6 +18,7 @@ use windfall_campaign::recording::read::{read_with_gaps, recording_file};
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
+use windfall_draw::xy::Figure;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::known_names::known_names;
@@ -131,6 +134,14 @@ pub struct LiveOutcome {
     pub seconds: f64,
 }
 
+/// The part of a recording that a live fit uses.
+struct ReadImpact {
+    campaign: ImpactCampaign,
+    entry: ImpactEntry,
+    impact: Impact,
+    findings: Vec<Finding>,
+}
+
 impl LiveCampaign {
     /// Reads a campaign of single impacts.
     ///
@@ -198,18 +209,12 @@ impl LiveImpact {
     /// that cannot be fitted is reported in the outcome.
     pub fn refit(&self, request: &LiveRequest, shown: &str) -> Result<LiveOutcome, Error> {
         let begin = Instant::now();
-        let mut campaign = self.campaign.clone();
-        apply_request(&mut campaign, &request.fit)?;
-        // What resamples or draws takes long, and is for the whole campaign.
-        let method = &mut campaign.fit.options.intervals.method;
-        if let IntervalMethod::Bootstrap | IntervalMethod::Posterior = method {
-            *method = IntervalMethod::Asymptotic;
-        }
-        let mut entry = campaign.shared.entries[0].clone();
-        entry.from = request.from.or(entry.from);
-        entry.to = request.to.or(entry.to);
-        let mass = self.rig.rig.effective_mass();
-        let (impact, findings) = extract_entry(&campaign, &entry, &self.recording, Some(mass))?;
+        let ReadImpact {
+            campaign,
+            entry,
+            impact,
+            findings,
+        } = self.read(request)?;
         let laws = campaign.fit.laws.iter().map(|law| {
             let own = (&campaign, &self.rig.rig);
             let fitted = fit_law(own, &entry, (&impact, &findings), law);
@@ -240,6 +245,49 @@ impl LiveImpact {
             findings: findings.iter().map(told).collect(),
             command: equal_command(&campaign, &entry, shown, &request.fit),
             seconds: begin.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// The figure that `fit --figures` draws of the impact, fitted as asked.
+    ///
+    /// # Errors
+    /// Those of [`LiveImpact::refit`]; a law cannot be fitted.
+    pub fn figure(&self, request: &LiveRequest) -> Result<Figure, Error> {
+        let ReadImpact {
+            campaign,
+            entry,
+            impact,
+            findings,
+        } = self.read(request)?;
+        let rig = &self.rig.rig;
+        let laws = campaign.fit.laws.iter();
+        let fitted = laws.map(|law| fit_law((&campaign, rig), &entry, (&impact, &findings), law));
+        let outcomes = fitted.collect::<Result<Vec<ImpactOutcome>, Error>>()?;
+        let outcomes: Vec<&ImpactOutcome> = outcomes.iter().collect();
+        let used = (rig, campaign.fit.options.end, &campaign.fit.user[..]);
+        Ok(figure_of_impact(&entry.id, &impact, &outcomes, used))
+    }
+
+    /// The impact in the part of the recording that is asked for, and the campaign with the
+    /// options that are.
+    fn read(&self, request: &LiveRequest) -> Result<ReadImpact, Error> {
+        let mut campaign = self.campaign.clone();
+        apply_request(&mut campaign, &request.fit)?;
+        // What resamples or draws takes long, and is for the whole campaign.
+        let method = &mut campaign.fit.options.intervals.method;
+        if let IntervalMethod::Bootstrap | IntervalMethod::Posterior = method {
+            *method = IntervalMethod::Asymptotic;
+        }
+        let mut entry = campaign.shared.entries[0].clone();
+        entry.from = request.from.or(entry.from);
+        entry.to = request.to.or(entry.to);
+        let mass = self.rig.rig.effective_mass();
+        let (impact, findings) = extract_entry(&campaign, &entry, &self.recording, Some(mass))?;
+        Ok(ReadImpact {
+            campaign,
+            entry,
+            impact,
+            findings,
         })
     }
 

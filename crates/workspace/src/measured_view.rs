@@ -9,13 +9,13 @@ use windfall_campaign::store::runs::latest_run;
 use windfall_draw::files::NamedFigure;
 use windfall_draw::page::CaptionedTable;
 use windfall_draw::theme::PAGE;
-use windfall_draw::xy::drawing_of_figure;
+use windfall_draw::xy::{Figure, drawing_of_figure};
 use windfall_files::error::Error;
 use windfall_files::found::{FailureOutcome, FindingOutcome};
 use windfall_files::option_value::unusable;
 use windfall_measure::any_outcome::AnyOutcome;
 use windfall_measure::measured::{MeasuredItem, MeasuredOutcome};
-use windfall_report::fit_any::measurement_of;
+use windfall_report::fit_any::{MeasurementWork, measurement_of};
 use windfall_report::items::{tables_of_each, tables_of_whole};
 
 /// A table as the report has it.
@@ -62,11 +62,7 @@ pub struct MeasuredView {
 /// # Errors
 /// The campaign or its store cannot be read, it fits impacts, or it has no such recording.
 pub fn measured_view(directory: &Path, item: Option<&str>) -> Result<MeasuredView, Error> {
-    let kind = campaign_kind(directory)?;
-    let Some(measurement) = measurement_of(kind) else {
-        let problem = "fits impacts, each of which has a live fit";
-        return Err(unusable(kind.name().to_owned(), problem));
-    };
+    let measurement = measurement(directory)?;
     let (mut outcome, figures) = match item {
         Some(id) => {
             let item = (measurement.item)(directory, id)?;
@@ -99,6 +95,40 @@ pub fn measured_view(directory: &Path, item: Option<&str>) -> Result<MeasuredVie
         figures: figures.iter().map(shown_figure).collect(),
         findings,
         failed,
+    })
+}
+
+fn measurement(directory: &Path) -> Result<MeasurementWork, Error> {
+    let kind = campaign_kind(directory)?;
+    measurement_of(kind).ok_or_else(|| {
+        let problem = "fits impacts, each of which has a live fit";
+        unusable(kind.name().to_owned(), problem)
+    })
+}
+
+/// A figure of a campaign that fits no impacts.
+///
+/// * `item`: id of a recording; `None` for the whole
+/// * `name`: that of the figure, as [`MeasuredView`] gives it
+///
+/// # Errors
+/// Those of [`measured_view`]; there is no such figure.
+pub fn measured_figure(directory: &Path, item: Option<&str>, name: &str) -> Result<Figure, Error> {
+    let measurement = measurement(directory)?;
+    let figures = match item {
+        Some(id) => (measurement.item)(directory, id)?
+            .figure
+            .into_iter()
+            .collect(),
+        None => (measurement.figures)(directory)?,
+    };
+    let found = figures.into_iter().find(|own| own.name == name);
+    let found = found.map(|own| own.figure);
+    found.ok_or_else(|| {
+        unusable(
+            format!("figure '{name}'"),
+            "is not among those that are shown",
+        )
     })
 }
 

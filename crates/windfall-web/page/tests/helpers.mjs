@@ -59,6 +59,40 @@ export async function pendulum(parent, name = "apples", specimens = 6) {
   return directory;
 }
 
+/** A recording as a German spreadsheet writes it: an impact with noise, from the law. */
+export async function germanRecording() {
+  const words = await windfall("simulate", "pendulum", "--law", "kuwabara-kono(k=753599, c=1524)", "--rate", "100 kHz", "--format", "csv");
+  const [header, ...rows] = words.trim().split("\n").map((line) => line.split(","));
+  const at = (name) => header.indexOf(name);
+  let seed = 7;
+  const noise = () => {
+    // Park and Miller's generator: the same noise in every run.
+    seed = (seed * 48271) % 2147483647;
+    return seed / 2147483647 - 0.5;
+  };
+  const german = (value) => value.toPrecision(9).replace(".", ",");
+  const start = Number(rows[0][at("time_s")]);
+  // More of the free flight before it, so that the noise without contact is seen.
+  const step = Number(rows[1][at("time_s")]) - start;
+  const velocity = Number(rows[0][at("rate_m_s")]);
+  const flight = Array.from({ length: 300 }, (_, index) => ({
+    time: start - (300 - index) * step,
+    force: 0,
+    displacement: Number(rows[0][at("displacement_m")]) - (300 - index) * step * velocity,
+  }));
+  const impact = rows.map((row) => ({
+    time: Number(row[at("time_s")]),
+    force: Number(row[at("force_N")]),
+    displacement: Number(row[at("displacement_m")]),
+  }));
+  const lines = [...flight, ...impact].map(({ time, force, displacement }) =>
+    [1000 * (time - start) + 3, force + 0.4 * noise(), 1000 * displacement + 2e-4 * noise()]
+      .map(german)
+      .join(";"),
+  );
+  return ["Zeit [ms];Kraft [N];Weg [mm]", ...lines].join("\r\n");
+}
+
 async function freePort() {
   const server = createServer();
   await new Promise((done) => server.listen(0, "127.0.0.1", done));

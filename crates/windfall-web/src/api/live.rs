@@ -1,15 +1,22 @@
-//! Live fits of one impact, as its window and laws are changed.
+//! Live fits of one impact, as its window and laws are changed, and figures for a paper.
 
 use crate::app::{Answer, App};
 use crate::described::RequestProblems;
 use crate::given::Given;
 use crate::problem::Problem;
 use axum::extract::{Path, State};
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use utoipa::ToSchema;
 use windfall_campaign::pipeline::request::FitRequest;
+use windfall_draw::files::FigureFormat;
+use windfall_draw::theme::FigureTheme;
+use windfall_draw::width::Width;
+use windfall_draw::xy::drawing_of_figure;
 use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::live_fit::{LiveOutcome, LiveRequest};
+use windfall_workspace::measured_view::measured_figure;
 
 /// What to fit; what is left out is taken from the campaign.
 #[derive(Debug, Default, Deserialize, ToSchema)]
@@ -55,37 +62,108 @@ pub(crate) async fn refit(
     Path(id): Path<String>,
     Given(asked): Given<Refit>,
 ) -> Answer<LiveOutcome> {
-    // Slow methods run as jobs of the whole campaign.
-    let quick = ["asymptotic", "profile"];
-    let intervals = asked.intervals.as_deref();
-    if intervals.is_some_and(|word| !quick.contains(&word)) {
-        return Err(Problem::request(
-            "a live fit has asymptotic or profile intervals; set the others in the campaign and \
-             fit it",
-        ));
-    }
+    asked.check()?;
     app.answer(id, move |app, directory| {
         let impact = app.cache.impact(directory, &asked.impact)?;
-        let finite = |time: Option<f64>| time.filter(|time| time.is_finite());
-        let request = LiveRequest {
-            from: finite(asked.from),
-            to: finite(asked.to),
-            fit: FitRequest {
-                laws: asked.laws,
-                free: asked.free,
-                quantities: asked.quantities,
-                weights: asked.weights,
-                noise: asked.noise,
-                intervals: asked.intervals,
-                onset: asked.onset,
-                initial_velocity: asked.initial_velocity,
-                displacement_offset: asked.displacement_offset,
-                end: asked.end,
-                ..FitRequest::default()
-            },
-            series: asked.series,
-        };
-        impact.refit(&request, &name_of(directory))
+        impact.refit(&asked.request(), &name_of(directory))
     })
     .await
+}
+
+impl Refit {
+    /// Refuses what takes too long for one request.
+    fn check(&self) -> Result<(), Problem> {
+        // Slow methods run as jobs of the whole campaign.
+        let quick = ["asymptotic", "profile"];
+        let intervals = self.intervals.as_deref();
+        if intervals.is_some_and(|word| !quick.contains(&word)) {
+            return Err(Problem::request(
+                "a live fit has asymptotic or profile intervals; set the others in the campaign \
+                 and fit it",
+            ));
+        }
+        Ok(())
+    }
+
+    fn request(self) -> LiveRequest {
+        let finite = |time: Option<f64>| time.filter(|time| time.is_finite());
+        LiveRequest {
+            from: finite(self.from),
+            to: finite(self.to),
+            fit: FitRequest {
+                laws: self.laws,
+                free: self.free,
+                quantities: self.quantities,
+                weights: self.weights,
+                noise: self.noise,
+                intervals: self.intervals,
+                onset: self.onset,
+                initial_velocity: self.initial_velocity,
+                displacement_offset: self.displacement_offset,
+                end: self.end,
+                ..FitRequest::default()
+            },
+            series: self.series,
+        }
+    }
+}
+
+/// A figure to draw for a paper.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FigureGiven {
+    /// An impact and what is fitted to it.
+    fit: Option<Refit>,
+    /// In place of it: the name of a figure of a campaign that fits no impacts.
+    figure: Option<String>,
+    /// The recording that the figure shows; the whole campaign if left out.
+    item: Option<String>,
+    /// Width in print: "84 mm"; as large as a screen shows it if left out.
+    width: Option<String>,
+    /// "svg", "pdf" or "png".
+    #[schema(example = "pdf")]
+    format: String,
+}
+
+/// A figure as `fit --figures` draws it, as a download.
+#[utoipa::path(
+    post, path = "/api/campaigns/{id}/figure", params(("id" = String, Path, example = "bench")), request_body = FigureGiven,
+    responses((status = 200, body = Vec<u8>, content_type = "application/octet-stream"), RequestProblems))]
+pub(crate) async fn figure(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    Given(asked): Given<FigureGiven>,
+) -> Result<Response, Problem> {
+    if let Some(fit) = &asked.fit {
+        fit.check()?;
+    }
+    let (format, kind) = match asked.format.as_str() {
+        "svg" => (FigureFormat::Svg, "image/svg+xml"),
+        "pdf" => (FigureFormat::Pdf, "application/pdf"),
+        "png" => (FigureFormat::Png, "image/png"),
+        _ => {
+            return Err(Problem::request(
+                "the format of a figure is svg, pdf or png",
+            ));
+        }
+    };
+    let bytes = app.on_campaign(id, move |app, directory| {
+        let width = asked
+            .width
+            .as_deref()
+            .map(str::parse::<Width>)
+            .transpose()?;
+        let figure = match (asked.fit, asked.figure) {
+            (Some(fit), _) => {
+                let impact = app.cache.impact(directory, &fit.impact)?;
+                impact.figure(&fit.request())?
+            }
+            (None, name) => {
+                let name = name.unwrap_or_default();
+                measured_figure(directory, asked.item.as_deref(), &name)?
+            }
+        };
+        format.of_svg(&drawing_of_figure(&figure, width).svg(FigureTheme::Light.colours()))
+    });
+    Ok(([(header::CONTENT_TYPE, kind)], bytes.await?).into_response())
 }

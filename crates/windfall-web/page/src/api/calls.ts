@@ -8,6 +8,7 @@
 import type {
   ExclusionGiven,
   Calls,
+  FigureGiven,
   CampaignChanged,
   ChannelsGiven,
   GridGiven,
@@ -113,6 +114,8 @@ export const api = {
     call("GET /api/campaigns/{id}/outline", [id], { query, signal }),
   refit: (id: string, body: Refit, signal?: AbortSignal) =>
     call("POST /api/campaigns/{id}/refit", [id], { body, signal }),
+  /** A figure as a file. */
+  figure: (id: string, body: FigureGiven) => call("POST /api/campaigns/{id}/figure", [id], { body }),
   saveWindow: (id: string, version: string, body: WindowGiven) =>
     call("PUT /api/campaigns/{id}/window", [id], { body, version }),
   saveExclusion: (id: string, version: string, body: ExclusionGiven) =>

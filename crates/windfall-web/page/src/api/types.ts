@@ -139,6 +139,9 @@ export interface FeaturesOutcome {
   directions: DirectionOutcome[]; chi_square: number; freedom: number; p: number | null; widened: number;
   fitted: FittedFeature[]; along: AlongOutcome[]; converged: boolean; evaluations: number;
 }
+export interface FigureGiven {
+  fit?: Refit | null; figure?: string | null; item?: string | null; width?: string | null; format: string;
+}
 export interface FileBeside { file: string; now: string; before: string; }
 export interface FindingKind {
   code: string; severity: Severity; message: string; laws: string[]; impacts: string[]; of: number | null;
@@ -548,6 +551,7 @@ export interface Calls {
   "PUT /api/campaigns/{id}/channels": Call<CampaignView, ChannelsGiven>;
   "GET /api/campaigns/{id}/events": Call<string>;
   "PUT /api/campaigns/{id}/exclusion": Call<CampaignView, ExclusionGiven>;
+  "POST /api/campaigns/{id}/figure": Call<ArrayBuffer, FigureGiven>;
   "POST /api/campaigns/{id}/impacts": Call<CampaignView, ImpactsGiven>;
   "POST /api/campaigns/{id}/jobs": Call<JobView, JobGiven>;
   "GET /api/campaigns/{id}/kept": Call<KeptWork[]>;

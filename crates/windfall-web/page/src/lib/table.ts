@@ -57,6 +57,9 @@ export interface ResultTable {
 /** Value of a result, however its kind of campaign writes it. */
 type Value = Partial<EstimateOutcome | MeasuredValue>;
 
+/** Codes of findings, each once: there is one of each channel. */
+const codes = (findings: { code: string }[]): string => [...new Set(findings.map((own) => own.code))].join(", ");
+
 /** Joins the results with the tables of the campaign. */
 export function resultTable(campaign: CampaignView, results: StoredResults | null): ResultTable {
   const items: (ImpactOutcome | MeasuredItem)[] = results?.outcome?.impacts ?? [];
@@ -109,11 +112,11 @@ export function resultTable(campaign: CampaignView, results: StoredResults | nul
       row.cells.set(name, text);
     }
     note("findings", "Findings", "", "result", false);
-    row.cells.set("findings", item.findings.map((finding) => finding.code).join(", "));
+    row.cells.set("findings", codes(item.findings));
     const reasons = "left_out" in item ? (item.left_out ?? []) : [];
     if (reasons.length > 0) {
       note("left_out", "Left out", "", "result", false);
-      row.cells.set("left_out", reasons.map((reason) => reason.code).join(", "));
+      row.cells.set("left_out", codes(reasons));
     }
     specimens.put(row, item.specimen);
     impacts.put(row, item.id);
