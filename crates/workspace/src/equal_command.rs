@@ -39,6 +39,13 @@ pub fn command_of_fit(words: &[&str], request: &FitRequest) -> String {
     command(&words.iter().copied().chain(options).collect::<Vec<_>>())
 }
 
+/// `windfall population DIR OPTION …`
+pub fn command_of_population(shown: &str, request: &FitRequest, covariates: &[String]) -> String {
+    let mut words = vec!["population", shown];
+    words.extend(covariates.iter().flat_map(|own| ["--covariate", own]));
+    command_of_fit(&words, request)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

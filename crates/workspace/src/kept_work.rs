@@ -5,7 +5,7 @@ use crate::campaign_files::campaign_version;
 use crate::campaign_files::read_any;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use windfall_campaign::recording::digests::recording_digests;
 use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::store::documents::{DocumentRecord, find_documents};
@@ -34,8 +34,63 @@ pub struct KeptResult {
     pub time: String,
     /// What it was made of.
     pub made_of: MadeOf,
-    /// The work with its result, as it was shown.
-    pub shown: Value,
+    /// The work, one of [`KEPT`].
+    pub work: String,
+    /// The command that does it.
+    pub command: String,
+    /// What the command gives in JSON.
+    pub result: Value,
+}
+
+/// Work that has begun, and whose result will be kept.
+#[derive(Debug)]
+pub struct Keeping {
+    directory: PathBuf,
+    made_of: MadeOf,
+    work: &'static str,
+    command: String,
+}
+
+impl Keeping {
+    /// Before the work begins: a change of the campaign meanwhile makes the result outdated.
+    ///
+    /// * `work`: one of [`KEPT`]
+    /// * `command`: the command that does it
+    ///
+    /// Nothing where the campaign cannot be read, which the work will tell.
+    pub fn begin(directory: &Path, work: &'static str, command: String) -> Option<Self> {
+        Some(Self {
+            directory: directory.to_path_buf(),
+            made_of: made_of(directory).ok()?,
+            work,
+            command,
+        })
+    }
+
+    /// Keeps the result in the place of the one of before.
+    ///
+    /// # Errors
+    /// The store is damaged, foreign, newer, or cannot be written.
+    pub fn end<T: Serialize>(self, result: &T) -> Result<(), Error> {
+        let unwritable = |error| Error::unwritable("this result", error);
+        let kept = KeptResult {
+            time: time_now(),
+            made_of: self.made_of,
+            work: self.work.to_owned(),
+            command: self.command,
+            result: serde_json::to_value(result).map_err(unwritable)?,
+        };
+        let record = DocumentRecord {
+            key: key_of(self.work),
+            kind: "kept".to_owned(),
+            item: self.work.to_owned(),
+            specimen: String::new(),
+            file: String::new(),
+            document: serde_json::to_string(&kept).map_err(unwritable)?,
+            values: Vec::new(),
+        };
+        write_document(&self.directory.join(STORE_FILE), &record)
+    }
 }
 
 /// What a result that begins now is made of.
@@ -59,35 +114,23 @@ pub fn made_of(directory: &Path) -> Result<MadeOf, Error> {
     })
 }
 
-/// Keeps a result in the place of the one of before.
+/// Does work and keeps its result, which is given whether it can be kept or not: a store may be
+/// read-only.
 ///
 /// * `work`: one of [`KEPT`]
+/// * `command`: the command that does it
 ///
 /// # Errors
-/// The store is damaged, foreign, newer, or cannot be written.
-pub fn keep_result(
+/// Those of the work.
+pub fn kept<T: Serialize, E>(
     directory: &Path,
-    work: &str,
-    made_of: MadeOf,
-    shown: Value,
-) -> Result<(), Error> {
-    let kept = KeptResult {
-        time: time_now(),
-        made_of,
-        shown,
-    };
-    let document =
-        serde_json::to_string(&kept).map_err(|error| Error::unwritable("this result", error))?;
-    let record = DocumentRecord {
-        key: key_of(work),
-        kind: "kept".to_owned(),
-        item: work.to_owned(),
-        specimen: String::new(),
-        file: String::new(),
-        document,
-        values: Vec::new(),
-    };
-    write_document(&directory.join(STORE_FILE), &record)
+    (work, command): (&'static str, String),
+    result: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
+    let keeping = Keeping::begin(directory, work, command);
+    let result = result()?;
+    let _ = keeping.map(|keeping| keeping.end(&result));
+    Ok(result)
 }
 
 /// The results that are kept.
@@ -102,5 +145,5 @@ pub fn kept_results(directory: &Path) -> Result<Vec<KeptResult>, Error> {
 
 /// Each work has one result that is kept.
 fn key_of(work: &str) -> String {
-    digest_text(&format!("kept {work}"))
+    digest_text(&format!("kept result of {work}"))
 }

@@ -239,6 +239,19 @@ test("a comparison of laws is opened again, and is stale after a change", async 
   await other.context.close();
 });
 
+test("comparisons and populations that a command calculated are opened, too", async () => {
+  const other = await open(browser, server, { hash: "#/c/apples/laws" });
+  await other.page.getByText("Stale:").first().waitFor();
+  await windfall("laws", apples, "--law", "flores", "--law", "kuwabara-kono", "--quiet");
+  const ranking = other.page.getByRole("region", { name: "Ranking of laws" });
+  await ranking.getByText("flores").first().waitFor();
+  await windfall("population", apples, "--quiet");
+  await other.page.getByRole("region", { name: "Parameters of the population" }).waitFor();
+  assert.equal(await other.page.getByText("Stale:").count(), 0);
+  assert.deepEqual(other.troubles, []);
+  await other.context.close();
+});
+
 test("results of a command appear, and what one is doing stays", async () => {
   await pendulum(place.directory, "pears", 12);
   const other = await open(browser, server, { hash: "#/c/pears/table" });

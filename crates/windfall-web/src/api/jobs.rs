@@ -23,8 +23,8 @@ use windfall_report::fit_any::fit_any;
 use windfall_report::run::{ReportRequest, report_campaign};
 use windfall_report::stored_card::CARD_FILE;
 use windfall_workspace::campaign_view::{check_work, name_of};
-use windfall_workspace::equal_command::command_of_fit;
-use windfall_workspace::kept_work::{KEPT, keep_result, kept_results, made_of};
+use windfall_workspace::equal_command::{command_of_fit, command_of_population};
+use windfall_workspace::kept_work::{KEPT, Keeping, kept_results, made_of};
 use windfall_workspace::results_table::write_results_table;
 use windfall_workspace::rig_form::check_rig_given;
 
@@ -54,15 +54,12 @@ impl JobGiven {
     }
 
     fn command(&self, shown: &str) -> String {
-        let fit = command_of_fit(&[self.work.name(), shown], &self.fit());
+        let fit = self.fit();
         match self.work {
-            Work::Fit | Work::Laws | Work::Report => fit,
-            Work::Population => {
-                let covariates = self.covariates.iter();
-                let pairs = covariates.flat_map(|c| ["--covariate", c.as_str()]);
-                let words: Vec<&str> = ["population", shown].into_iter().chain(pairs).collect();
-                command(&words)
+            Work::Fit | Work::Laws | Work::Report => {
+                command_of_fit(&[self.work.name(), shown], &fit)
             }
+            Work::Population => command_of_population(shown, &fit, &self.covariates),
             Work::Calibrate => {
                 let card = format!("{shown}/{CARD_FILE}");
                 command(&["calibrate", shown, "--card", &card])
@@ -165,20 +162,17 @@ fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
     }
     let ending = Ending(job);
     let work = given.work.name();
-    // What the files say when it begins: a change meanwhile makes the result outdated.
-    let made_of = match KEPT.contains(&work) {
-        true => made_of(&directory).ok(),
-        false => None,
-    };
+    let keeping = KEPT.contains(&work).then_some(());
+    let keeping = keeping.and_then(|()| Keeping::begin(&directory, work, job.view().command));
     let result = given.run(directory.clone(), job);
     let done = result.is_ok();
     job.end(result, |error| app.told(error));
     drop(ending);
     // The result is shown whether it can be kept or not: a store may be read-only.
-    if let (Some(made_of), true) = (made_of, done) {
+    if let (Some(keeping), true) = (keeping, done) {
         let shown = app.tell(&job.view()).map(Told::into_json).ok();
-        let shown = shown.and_then(|text| serde_json::from_str(&text).ok());
-        let _ = shown.map(|shown| keep_result(&directory, work, made_of, shown));
+        let shown = shown.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+        let _ = shown.map(|shown| keeping.end(&shown["result"]));
     }
 }
 
@@ -200,7 +194,7 @@ pub(crate) struct KeptWork {
     get, path = "/api/campaigns/{id}/kept", params(("id" = String, Path, example = "bench")),
     responses((status = 200, body = Vec<KeptWork>), QuestionProblems))]
 pub(crate) async fn kept(State(app): State<App>, Path(id): Path<String>) -> Answer<Vec<KeptWork>> {
-    app.answer(id, |_, directory| {
+    app.answer(id.clone(), move |_, directory| {
         let kept = kept_results(directory)?;
         let now = match kept.is_empty() {
             true => None,
@@ -209,7 +203,17 @@ pub(crate) async fn kept(State(app): State<App>, Path(id): Path<String>) -> Answ
         let works = kept.into_iter().map(|own| KeptWork {
             stale: Some(&own.made_of) != now.as_ref(),
             time: own.time,
-            job: own.shown,
+            job: serde_json::json!({
+                "job": "kept",
+                "campaign": id,
+                "work": own.work,
+                "result": own.result,
+                "state": "done",
+                "done": 1,
+                "all": 1,
+                "problem": null,
+                "command": own.command,
+            }),
         });
         Ok(works.collect())
     })
