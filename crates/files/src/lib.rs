@@ -1,6 +1,7 @@
 //! Files of campaigns and tables, cells and units as text, errors that name file, line and key, and where a result comes from.
 
 pub mod allowed;
+pub mod cache;
 pub mod confined;
 pub mod error;
 mod error_words;

@@ -102,6 +102,23 @@ pub fn inspect_opened(
     options: &OpenOptions,
     channels: &[String],
 ) -> Result<Inspection, Error> {
+    Ok(inspect_taking(path, options, channels, &mut |_, _| ())?.0)
+}
+
+/// [`inspect_opened`] for a caller that looks at the samples too, on the same way through the
+/// file; also the channels as the file describes them.
+///
+/// * `take`: is given the place of a channel in the file and its next samples, in blocks that
+///   may interleave with those of others; NaN where there is no sample
+///
+/// # Errors
+/// Those of [`inspect_recording`].
+pub fn inspect_taking(
+    path: &Path,
+    options: &OpenOptions,
+    channels: &[String],
+    take: &mut dyn FnMut(usize, &[f64]),
+) -> Result<(Inspection, Contents), Error> {
     check_piped(path)?;
     protect(path);
     let mut reader = open(path, options).map_err(Error::Format)?;
@@ -109,7 +126,11 @@ pub fn inspect_opened(
     let shown = shown_channels(&contents, channels, path)?;
     let all: Vec<usize> = (0..contents.channels.len()).collect();
     let mut scans = Scans::of(&contents);
-    reader.read(&all, &mut scans).map_err(Error::Format)?;
+    let mut both = Shared {
+        scans: &mut scans,
+        take,
+    };
+    reader.read(&all, &mut both).map_err(Error::Format)?;
     // What reading itself has found out is in the notes by now.
     let notes = reader.contents().notes.iter();
     let mut findings: Vec<FindingOutcome> = notes
@@ -144,18 +165,19 @@ pub fn inspect_opened(
     }
     let assumed = guess_channels(&mut columns);
     let rows = scans.channels.iter().map(|scan| scan.values.rows).max();
-    Ok(Inspection {
+    let inspection = Inspection {
         file: path.display().to_string(),
         format: format!("{} {}", contents.format, contents.variant)
             .trim()
             .to_owned(),
         rows: rows.unwrap_or(0),
         columns,
-        properties: contents.properties.into_iter().collect(),
+        properties: contents.properties.clone().into_iter().collect(),
         assumed,
         findings,
         curves,
-    })
+    };
+    Ok((inspection, contents))
 }
 
 /// Channels by their names; all if none is named.
@@ -258,6 +280,23 @@ impl Sink for Scans {
             false => self.more_faults += 1,
         }
         Ok(())
+    }
+}
+
+/// Samples that are looked through, and go on to the caller.
+struct Shared<'a> {
+    scans: &'a mut Scans,
+    take: &'a mut dyn FnMut(usize, &[f64]),
+}
+
+impl Sink for Shared<'_> {
+    fn take(&mut self, position: usize, samples: &[f64]) -> Result<(), windfall_formats::Error> {
+        (self.take)(position, samples);
+        self.scans.take(position, samples)
+    }
+
+    fn fault(&mut self, fault: windfall_formats::Error) -> Result<(), windfall_formats::Error> {
+        self.scans.fault(fault)
     }
 }
 

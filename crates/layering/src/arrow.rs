@@ -65,7 +65,7 @@ const ARROWS: &[(&str, &str)] = &[
     ),
     (
         "workspace",
-        "report drop scene-run measure campaign draw files formats identify signal numerics",
+        "report drop scene-run inspect measure campaign draw files formats identify signal numerics",
     ),
     (
         "windfall",

@@ -66,10 +66,15 @@ impl Shared {
     /// A value as JSON, without paths of the machine.
     pub(crate) fn tell<T: Serialize>(&self, value: &T) -> Answer<T> {
         let json = serde_json::to_string(value).map_err(|e| Problem::internal(e.to_string()))?;
-        Ok(Told {
-            json: self.workspace.without_path(&json),
+        Ok(self.tell_json(&json))
+    }
+
+    /// A value that is JSON already, without paths of the machine.
+    pub(crate) fn tell_json<T>(&self, json: &str) -> Told<T> {
+        Told {
+            json: self.workspace.without_path(json),
             of: PhantomData,
-        })
+        }
     }
 }
 

@@ -9,6 +9,7 @@ pub mod live_cache;
 pub mod live_fit;
 pub mod measured_view;
 pub mod recording_outline;
+pub mod recording_stretches;
 pub mod results_table;
 pub mod rig_form;
 pub mod scene_runs;

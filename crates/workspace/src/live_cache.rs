@@ -2,13 +2,16 @@
 
 use crate::campaign_files::campaign_version;
 use crate::live_fit::{LiveCampaign, LiveImpact};
-use crate::recording_outline::OutlinedChannel;
+use crate::recording_outline::{Outline, OutlinedChannel};
+use crate::recording_stretches::{Glance, LONG};
 use crate::workspace::recordings_inside;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use windfall_campaign::settings::model::FilePlan;
+use windfall_files::cache;
 use windfall_files::confined::path_inside;
 use windfall_files::error::Error;
+use windfall_inspect::run::inspect_opened;
 
 /// Most bytes of recordings in memory; the newest stays in any case.
 const ROOM: usize = 1 << 30;
@@ -66,6 +69,7 @@ pub struct LiveCache {
     campaigns: Kept<LiveCampaign>,
     impacts: Kept<LiveImpact>,
     channels: Kept<OutlinedChannel>,
+    glances: Kept<Glance>,
 }
 
 impl LiveCache {
@@ -85,21 +89,62 @@ impl LiveCache {
             .get(&format!("{key} {id} {stamp}"), make, LiveImpact::bytes)
     }
 
-    /// A channel of a recording of a campaign, ready to be outlined.
+    /// What `inspect` says of a recording of a campaign, as JSON.
+    ///
+    /// # Errors
+    /// The name is refused, or as [`inspect_opened`].
+    pub fn inspection(&self, directory: &Path, file: &str) -> Result<String, Error> {
+        let (path, plan) = recording_inside(directory, file)?;
+        if let Some(glance) = self.glance(directory, file, &path, &plan)? {
+            return Ok(glance.inspection.clone());
+        }
+        let mut found = inspect_opened(&path, &plan.open, &[])?;
+        file.clone_into(&mut found.file);
+        serde_json::to_string(&found)
+            .map_err(|error| Error::access(&path, "read", std::io::Error::other(error.to_string())))
+    }
+
+    /// A part of a channel of a recording of a campaign, in about that many points.
+    ///
+    /// * `from`, `to`: times; the ends of the channel if `None`
     ///
     /// # Errors
     /// The name is refused, or as [`OutlinedChannel::read`].
-    pub fn channel(
+    pub fn outline(
         &self,
         directory: &Path,
-        file: &str,
-        channel: &str,
-    ) -> Result<Arc<OutlinedChannel>, Error> {
+        (file, channel): (&str, &str),
+        (from, to): (Option<f64>, Option<f64>),
+        points: usize,
+    ) -> Result<Outline, Error> {
         let (path, plan) = recording_inside(directory, file)?;
+        if let Some(glance) = self.glance(directory, file, &path, &plan)?
+            && let Some(outline) = glance.outline(channel, from, to, points)
+        {
+            return Ok(outline);
+        }
         let (shown, stamp) = (path.display(), stamp(&path));
         let key = format!("{shown} {stamp} {channel} {:?}", plan.time);
         let make = || OutlinedChannel::read(&path, &plan, channel);
-        self.channels.get(&key, make, OutlinedChannel::bytes)
+        let channel = self.channels.get(&key, make, OutlinedChannel::bytes)?;
+        Ok(channel.outline(from, to, points))
+    }
+
+    /// A recording at a glance, where it is a long one.
+    fn glance(
+        &self,
+        directory: &Path,
+        file: &str,
+        path: &Path,
+        plan: &FilePlan,
+    ) -> Result<Option<Arc<Glance>>, Error> {
+        if std::fs::metadata(path).map_or(0, |own| own.len()) < LONG {
+            return Ok(None);
+        }
+        let (shown, stamp) = (path.display(), stamp(path));
+        let key = format!("{shown} {stamp} {:?} {:?}", plan.open, plan.time);
+        let make = || Glance::of(directory, file, path, plan);
+        self.glances.get(&key, make, Glance::bytes).map(Some)
     }
 }
 
@@ -119,12 +164,9 @@ pub fn recording_inside(directory: &Path, file: &str) -> Result<(PathBuf, FilePl
     }
 }
 
-/// Size and time of change of a file, to see whether it is the same.
+/// By what a file is seen to be the same.
 fn stamp(path: &Path) -> String {
-    match std::fs::metadata(path) {
-        Ok(data) => format!("{} {:?}", data.len(), data.modified().ok()),
-        Err(error) => error.to_string(),
-    }
+    cache::stamp(path).unwrap_or_else(|error| error.to_string())
 }
 
 #[cfg(test)]

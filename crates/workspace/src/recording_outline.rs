@@ -17,7 +17,7 @@ use windfall_formats::open::open;
 const FIRST: usize = 16;
 
 /// Extremes of a stretch; NaN where it has no sample.
-type Extremes = [f64; 2];
+pub(crate) type Extremes = [f64; 2];
 
 /// A channel with the extremes of its stretches.
 #[derive(Clone, Debug)]
@@ -219,7 +219,7 @@ impl OutlinedChannel {
 }
 
 /// Where the file does not say when samples were taken, the campaign may.
-fn tell_times(contents: &mut Contents, index: usize, plan: &FilePlan) {
+pub(crate) fn tell_times(contents: &mut Contents, index: usize, plan: &FilePlan) {
     if contents.channels[index].time != TimeBase::Unknown {
         return;
     }
@@ -264,7 +264,7 @@ fn levels(samples: &[f64]) -> Vec<Vec<Extremes>> {
 }
 
 /// `f64::min` and `f64::max` skip NaN, a blank cell; infinities count as blank too.
-fn joined(a: Extremes, b: Extremes) -> Extremes {
+pub(crate) fn joined(a: Extremes, b: Extremes) -> Extremes {
     let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
     [finite(b[0]).min(a[0]), finite(b[1]).max(a[1])]
 }

@@ -325,42 +325,6 @@ test("the law card of the campaign is saved", async () => {
   await windfall("card", "show", "--file", file);
 });
 
-test("a recording of ten million samples opens in a second once it was read", async (context) => {
-  const samples = 10_000_000;
-  const wav = Buffer.alloc(44 + 2 * samples);
-  wav.write("RIFF", 0);
-  wav.writeUInt32LE(36 + 2 * samples, 4);
-  wav.write("WAVEfmt ", 8);
-  wav.writeUInt32LE(16, 16);
-  wav.writeUInt16LE(1, 20);
-  wav.writeUInt16LE(1, 22);
-  wav.writeUInt32LE(200_000, 24);
-  wav.writeUInt32LE(400_000, 28);
-  wav.writeUInt16LE(2, 32);
-  wav.writeUInt16LE(16, 34);
-  wav.write("data", 36);
-  wav.writeUInt32LE(2 * samples, 40);
-  for (let index = 0; index < samples; index++) {
-    wav.writeInt16LE(Math.round(9000 * Math.sin(index / 50_000) + (index % 97)), 44 + 2 * index);
-  }
-  await writeFile(join(place.directory, "apples/raw/long.wav"), wav);
-  await visit(page, "#/c/apples/recordings");
-  await page.getByRole("link", { name: "long.wav" }).waitFor();
-  const opened = async () => {
-    const start = performance.now();
-    await page.getByRole("link", { name: "long.wav" }).click();
-    await page.getByRole("img", { name: /samples; what is shown/ }).first().waitFor();
-    const took = performance.now() - start;
-    await visit(page, "#/c/apples/recordings");
-    await page.getByText("Choose a file to see its channels").waitFor();
-    return took;
-  };
-  const first = await opened();
-  const second = await opened();
-  context.diagnostic(`first ${first.toFixed(0)} ms, then ${second.toFixed(0)} ms`);
-  if (TIMED) assert.ok(second < 1000, `${second.toFixed(0)} ms`);
-});
-
 test("the theme can be chosen and is kept", async () => {
   await page.getByLabel("Colours").selectOption("dark");
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");

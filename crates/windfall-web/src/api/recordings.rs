@@ -87,8 +87,11 @@ pub(crate) async fn recording(
     Path(id): Path<String>,
     Asked(asked): Asked<FileAsked>,
 ) -> Answer<Inspection> {
-    app.answer(id, move |_, directory| inspected(directory, &asked.file))
-        .await
+    let json = app.on_campaign(id, move |app, directory| {
+        app.cache.inspection(directory, &asked.file)
+    });
+    let json = json.await?;
+    Ok(app.tell_json(&json))
 }
 
 fn inspected(directory: &std::path::Path, file: &str) -> Result<Inspection, Error> {
@@ -108,10 +111,11 @@ pub(crate) async fn outline(
     Asked(asked): Asked<OutlineAsked>,
 ) -> Answer<Outline> {
     app.answer(id, move |app, directory| {
-        let channel = app.cache.channel(directory, &asked.file, &asked.channel)?;
         let points = asked.points.unwrap_or(1000).clamp(10, MOST_POINTS);
         let finite = |time: Option<f64>| time.filter(|time| time.is_finite());
-        Ok(channel.outline(finite(asked.from), finite(asked.to), points))
+        let part = (finite(asked.from), finite(asked.to));
+        let names = (asked.file.as_str(), asked.channel.as_str());
+        app.cache.outline(directory, names, part, points)
     })
     .await
 }
