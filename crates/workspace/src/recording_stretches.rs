@@ -509,7 +509,7 @@ mod tests {
         let entries = || std::fs::read_dir(own.join(CACHE_FOLDER)).unwrap();
         assert_eq!(entries().count(), 2);
         // Another rate, where the file does not tell its times.
-        std::fs::write(&path, "force_N\n1\n2\n3\n".repeat(1)).unwrap();
+        std::fs::write(&path, "force_N\n1\n2\n3\n").unwrap();
         let ends = |glance: Glance| glance.channels[0].end();
         assert_eq!(ends(glance(TimePlan::Rate(2.0))), 1.0);
         assert_eq!(ends(glance(TimePlan::Rate(4.0))), 0.5);

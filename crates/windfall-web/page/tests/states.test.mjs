@@ -289,8 +289,9 @@ test("a fit of which nothing comes says why", async () => {
 test("results of the command become a table", async () => {
   await visit(page, "#/c/acoustic-command/regress");
   await settled("acoustic");
-  await page.getByRole("button", { name: "Make a table of the results" }).click();
+  // As soon as it is asked for.
   await page.getByLabel("Table for the regression").waitFor();
+  await page.waitForFunction(() => location.hash.includes("results.csv"));
   assert.equal(await page.getByLabel("Table for the regression").inputValue(), "tables/results.csv");
   assert.deepEqual(view.troubles.splice(0), []);
 });
