@@ -9,7 +9,7 @@ import assert from "node:assert/strict";
 import { readdir, readFile, stat, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { launch, open, pendulum, quantile, scratch, serve } from "./helpers.mjs";
+import { accessible, fits, launch, open, pendulum, pictures, quantile, scratch, serve } from "./helpers.mjs";
 
 const TIMED = process.env.TIMED === "1";
 const SAMPLES = 10_000_000;
@@ -97,6 +97,62 @@ test("ten million samples open at once in every later page, and after a new star
     `10⁷ samples in a new page: first ${first.took.toFixed(0)} ms; then median ${quantile(times, 0.5).toFixed(0)} ms, 95 % ${slow.toFixed(0)} ms (limit 300 ms)`,
   );
   if (TIMED) assert.ok(slow < 300, `${slow.toFixed(0)} ms`);
+});
+
+test("the strip shows the whole length, moves its window, and goes from contact to contact", async () => {
+  // Windows of two impacts in the long recording, which is read as the others are.
+  const impacts = join(place.directory, "apples/impacts.csv");
+  const text = await readFile(impacts, "utf8");
+  const [header, first] = text.split("\n");
+  const names = header.split(",");
+  const row = (id, from, to) => {
+    const told = { id, specimen: first.split(",")[names.indexOf("specimen")], file: "long.wav", from_s: from, to_s: to };
+    return [...names, ...["from_s", "to_s"].filter((name) => !names.includes(name))].map((name) => told[name] ?? "").join(",");
+  };
+  const wider = names.includes("from_s") ? header : `${header},from_s,to_s`;
+  const lines = text.trim().split("\n").slice(1).map((line) => (wider === header ? line : `${line},,`));
+  await writeFile(impacts, [wider, ...lines, row("early", 10, 10.004), row("late", 40, 40.004), ""].join("\n"));
+
+  const { page, context, troubles } = await opened();
+  const strip = page.getByRole("slider", { name: /Shown part of the whole recording/ });
+  await page.getByText("2 contacts").waitFor();
+  assert.equal(await strip.locator(".contact").count(), 2);
+  assert.equal(await strip.locator(".window").count(), 0);
+  const shown = async () => {
+    const words = (await strip.getAttribute("aria-valuetext")).replaceAll("\u202f", "").match(/[\d.]+\s*m?s\b/g);
+    return words.map((each) => parseFloat(each) * (each.endsWith("ms") ? 1e-3 : 1));
+  };
+  const holds = async (time) => {
+    const [from, to] = await shown();
+    assert.ok(from < time && time < to && to - from < 0.1, `${time} s in ${from} … ${to}`);
+  };
+  await page.getByRole("button", { name: "Next contact" }).click();
+  await holds(10.002);
+  await strip.focus();
+  await page.keyboard.press("PageDown");
+  await holds(40.002);
+  assert.ok(await page.getByRole("button", { name: "Next contact" }).isDisabled());
+  await page.getByRole("button", { name: "Previous contact" }).click();
+  await holds(10.002);
+  const [before] = await shown();
+  await strip.focus();
+  await page.keyboard.press("ArrowRight");
+  assert.ok((await shown())[0] > before);
+  // To the middle of the recording by the pointer.
+  const box = await strip.boundingBox();
+  await page.mouse.move(box.x + box.width * 0.3, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.5, box.y + 20, { steps: 4 });
+  await page.mouse.up();
+  // A pixel is 0.05 s or so.
+  const [from, to] = await shown();
+  assert.ok(Math.abs((from + to) / 2 - 25) < 0.2 && to - from < 0.1, `${from} … ${to}`);
+  await page.waitForFunction(() => /[?&]t=2[45]\./.test(location.hash));
+  await accessible(page, "a recording with its strip");
+  await fits(page, "a recording with its strip");
+  await pictures(page, "strip");
+  assert.deepEqual(troubles, []);
+  await context.close();
 });
 
 test("a damaged entry is made again, and a changed recording is read again", async () => {
