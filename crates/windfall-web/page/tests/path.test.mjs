@@ -123,7 +123,7 @@ test("a recording is panned and zoomed by wheel, pointer and keys", async () => 
   await visit(page, "#/c/apples/recordings/specimen-01.csv");
   const plot = page.getByRole("img", { name: /^force_V from/ });
   await plot.waitFor();
-  const tools = page.getByRole("toolbar");
+  const tools = page.getByRole("toolbar", { name: "What is shown of the recording" });
   const before = await tools.textContent();
   await plot.hover();
   for (let turn = 0; turn < 6; turn++) await page.mouse.wheel(0, -120);
