@@ -38,6 +38,7 @@ mod regress;
 mod relaxation;
 mod report;
 mod revision;
+mod rig_given;
 mod scene;
 mod serve;
 mod several_contacts;

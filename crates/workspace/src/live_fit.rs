@@ -2,7 +2,6 @@
 //! read once, and nothing is kept.
 
 use crate::equal_command::command_of_fit;
-use crate::rig_form::check_rig_given;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -148,8 +147,8 @@ impl LiveCampaign {
     /// # Errors
     /// The campaign is wrong, or nothing shows the mass of its rig.
     pub fn open(directory: &Path) -> Result<Self, Error> {
-        check_rig_given(directory)?;
         let mut campaign = read_campaign(directory)?;
+        campaign.shared.check_rig_given()?;
         let rig = find_rig(&mut campaign)?;
         Ok(Self { campaign, rig })
     }
