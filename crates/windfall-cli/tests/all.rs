@@ -24,6 +24,7 @@ mod inputs;
 mod joint;
 mod kinds;
 mod known;
+mod lack_of_fit;
 mod library;
 mod licences;
 mod man;

@@ -14,6 +14,7 @@ use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_entry;
 use windfall_campaign::recording::read::{read_with_gaps, recording_file};
+use windfall_campaign::result::fit_outcome::told;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
@@ -28,7 +29,6 @@ use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
 use windfall_identify::fit::problem::{FitOptions, LawProblem};
 use windfall_identify::rig::kind::Rig;
 use windfall_identify::rig::simulate::Trajectory;
-use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::recording::Recording;
 
@@ -226,7 +226,6 @@ impl LiveImpact {
                 law.aicc = aicc.filter(|_| law.outcome.is_some());
             }
         }
-        let told = |finding: &Finding| FindingOutcome::new(finding.code(), finding.to_string());
         let (start, stop) = ends(&self.recording);
         Ok(LiveOutcome {
             impact: entry.id.clone(),
