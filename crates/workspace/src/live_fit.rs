@@ -29,6 +29,7 @@ use windfall_identify::fit::interval::{IntervalMethod, IntervalOptions};
 use windfall_identify::fit::problem::{FitOptions, LawProblem};
 use windfall_identify::rig::kind::Rig;
 use windfall_identify::rig::simulate::Trajectory;
+use windfall_signal::Finding;
 use windfall_signal::impact::{Impact, Series};
 use windfall_signal::recording::Recording;
 
