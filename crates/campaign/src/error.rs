@@ -208,6 +208,14 @@ pub enum CampaignError {
         /// Why the first one does not show it.
         first: String,
     },
+    /// A rig that is still the example of a template.
+    #[error("{place}: [rig]: {problem}")]
+    RigNotGiven {
+        /// Where.
+        place: Place,
+        /// What is missing, and how it is said.
+        problem: String,
+    },
     /// An impact whose energy nothing says.
     #[error(
         "{place}: the impact energy is not known; give a column energy_J, or drop_height_m \

@@ -20,6 +20,10 @@ pub struct FindingKind {
     pub message: String,
     /// The laws whose fits have it, where the fits of others have not.
     pub laws: Vec<String>,
+    /// The channel, or the quantity of the fit, that is meant, where all impacts mean the same
+    /// one.
+    #[schema(value_type = Option<String>)]
+    pub channel: Option<Name>,
     /// Ids of the impacts that have it; none where it is one of the whole.
     pub impacts: Vec<String>,
     /// How many impacts there are, where they are all of one sort.
@@ -52,6 +56,7 @@ pub fn finding_kinds<'a>(
         severity: finding.severity,
         message: finding.message.clone(),
         laws: Vec::new(),
+        channel: finding.channel,
         impacts: Vec::new(),
         of: None,
     });
@@ -60,6 +65,7 @@ pub fn finding_kinds<'a>(
         let own = all.iter().map(|own| own.law).unique().map(str::to_owned);
         let own: Vec<String> = own.collect();
         let first = all[0].finding;
+        let one = all.iter().map(|own| own.finding.channel).all_equal();
         FindingKind {
             code: first.code,
             severity: first.severity,
@@ -69,6 +75,7 @@ pub fn finding_kinds<'a>(
             } else {
                 Vec::new()
             },
+            channel: first.channel.filter(|_| one),
             impacts: all.iter().map(|own| own.id.to_owned()).unique().collect(),
             of,
         }
@@ -86,7 +93,11 @@ impl FindingKind {
             laws => format!("{}: {}", laws.join(", "), self.message),
         };
         let ids: Vec<&str> = self.impacts.iter().map(String::as_str).collect();
-        FindingOutcome::new(&self.code, of_impacts(&message, &ids, self.of))
+        FindingOutcome {
+            channel: self.channel,
+            severity: self.severity,
+            ..FindingOutcome::new(&self.code, of_impacts(&message, &ids, self.of))
+        }
     }
 }
 
@@ -98,13 +109,16 @@ mod tests {
     #[test]
     fn closed_form_each_kind_counts_impacts_and_names_its_law() {
         let [misfit, clipped] = ["misfit", "clipped"].map(|code| FindingOutcome::new(code, "odd"));
+        let misfit = misfit.of_channel(Some("force"));
+        let position = clipped.clone().of_channel(Some("position"));
+        let clipped = clipped.of_channel(Some("force"));
         let on = |finding, id, law| FoundOn { finding, id, law };
         let found = [
             on(&misfit, "a", "hertz"),
             on(&misfit, "b", "hertz"),
             on(&misfit, "c", "hertz"),
             on(&clipped, "b", "hertz"),
-            on(&clipped, "b", "simon"),
+            on(&position, "b", "simon"),
         ];
         let whole = [FindingOutcome::new("one-level", "one velocity")];
         let kinds = finding_kinds(&whole, found.into_iter(), &["hertz", "simon"], Some(4));
@@ -121,5 +135,9 @@ mod tests {
             ]
         );
         assert_eq!((kinds[0].impacts.len(), kinds[2].of), (1, None));
+        // Of two channels it is that of none.
+        let channels = kinds.iter().map(|kind| kind.told().channel);
+        let force = Some(Name::from("force"));
+        assert_eq!(channels.collect::<Vec<_>>(), [None, force, None]);
     }
 }

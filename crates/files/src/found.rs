@@ -46,6 +46,9 @@ pub struct FindingOutcome {
     pub severity: Severity,
     /// A sentence.
     pub message: String,
+    /// The channel, or the quantity of the fit, that is meant; null where it is not one alone.
+    #[schema(value_type = Option<String>)]
+    pub channel: Option<Name>,
 }
 
 /// A finding as files hold it. Its severity is that of today, whatever stands beside it.
@@ -53,11 +56,16 @@ pub struct FindingOutcome {
 struct StoredFinding {
     code: Name,
     message: String,
+    #[serde(default)]
+    channel: Option<Name>,
 }
 
 impl From<StoredFinding> for FindingOutcome {
     fn from(stored: StoredFinding) -> Self {
-        Self::new(&stored.code, stored.message)
+        Self {
+            channel: stored.channel,
+            ..Self::new(&stored.code, stored.message)
+        }
     }
 }
 
@@ -70,6 +78,16 @@ impl FindingOutcome {
             code: code.into(),
             severity: Severity::of(code),
             message,
+            channel: None,
+        }
+    }
+
+    /// Itself, as one of a channel or of a quantity of the fit.
+    #[must_use]
+    pub fn of_channel(self, channel: Option<&str>) -> Self {
+        Self {
+            channel: channel.map(Name::from),
+            ..self
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Remarks on fits.
 
-use windfall_numerics::written::{plain, unit_text};
+use windfall_numerics::written::{p_value, plain, unit_text};
+
+/// Probability below which residuals are called hardly random; 1.
+pub const LACK_OF_FIT: f64 = 0.01;
 
 /// A remark on one fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -108,6 +111,17 @@ pub enum Finding {
         quantity: &'static str,
         /// Standardised number of runs; 1.
         z: f64,
+    },
+    /// The residuals of a channel are hardly random.
+    #[error(
+        "the residuals of {quantity} are hardly random (runs test, {}): of 500 impacts that a law describes, up to five have this by chance",
+        p_value(*p)
+    )]
+    LackOfFit {
+        /// The quantity.
+        quantity: &'static str,
+        /// Probability of so few runs by chance, in any of the quantities; 1.
+        p: f64,
     },
     /// The residuals are much larger than the channel's own noise.
     #[error(
@@ -242,6 +256,17 @@ pub enum Finding {
 }
 
 impl Finding {
+    /// The quantity that is meant, where it is one.
+    pub fn quantity(&self) -> Option<&'static str> {
+        match self {
+            Self::StructuredResiduals { quantity, .. }
+            | Self::LackOfFit { quantity, .. }
+            | Self::Misfit { quantity, .. }
+            | Self::MissingQuantity { quantity } => Some(quantity),
+            _ => None,
+        }
+    }
+
     /// Stable name for scripts.
     pub fn code(&self) -> &'static str {
         match self {
@@ -255,6 +280,7 @@ impl Finding {
             Self::Correlated { .. } => "correlated",
             Self::Singular => "singular",
             Self::StructuredResiduals { .. } => "structured-residuals",
+            Self::LackOfFit { .. } => "lack-of-fit",
             Self::Misfit { .. } => "misfit",
             Self::UncertainMass { .. } => "uncertain-mass",
             Self::UncertainBench { .. } => "uncertain-bench",

@@ -324,6 +324,39 @@ pub enum Finding {
 }
 
 impl Finding {
+    /// The channel that is meant, where it is one.
+    pub fn channel(&self) -> Option<&str> {
+        match self {
+            Self::Reversed { channel, .. }
+            | Self::Clipped { channel, .. }
+            | Self::IrregularSampling { channel, .. }
+            | Self::ShortBaseline { channel, .. }
+            | Self::LocalBaseline { channel, .. }
+            | Self::Ringing { channel, .. }
+            | Self::Shaking { channel, .. }
+            | Self::Gravity { channel, .. }
+            | Self::OffsetRemoved { channel, .. }
+            | Self::WindowFromMotion { channel, .. }
+            | Self::HighThreshold { channel, .. }
+            | Self::NoiseAtFloor { channel, .. }
+            | Self::Glitch { channel, .. }
+            | Self::Spikes { channel, .. }
+            | Self::SpikesKept { channel, .. }
+            | Self::Bump { channel, .. }
+            | Self::Filtered { channel, .. }
+            | Self::DriftRemoved { channel, .. }
+            | Self::FlightHeldBack { channel, .. }
+            | Self::HumRemoved { channel, .. }
+            | Self::ZeroShift { channel, .. }
+            | Self::DriftUnknown { channel, .. }
+            | Self::TipMass { channel, .. }
+            | Self::GapInContact { channel, .. }
+            | Self::FewSamples { channel, .. }
+            | Self::MissingSamples { channel, .. } => Some(channel),
+            _ => None,
+        }
+    }
+
     /// Stable short name, for tables and JSON.
     pub fn code(&self) -> &'static str {
         match self {

@@ -3,12 +3,13 @@
 use crate::drop::{SimulatedDrop, SimulatedDropMotion};
 use crate::motion::{MotionOutcome, MovingDrop};
 use crate::text::{
-    Column, Row, column, findings_text, motion_csv, number_or_blank, rows, samples, six_digits,
+    Column, Row, column, findings_text, motion_csv, number_or_blank, rows, samples, shown,
 };
 use windfall_drop_rig::rig::Plate;
 use windfall_drop_rig::simulate::DropImpact;
 use windfall_files::error::Error;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::number::with_digits;
 use windfall_files::text::table::table_text;
 
 pub(crate) fn rows_of(own: &DropImpact) -> Vec<Row> {
@@ -73,10 +74,6 @@ pub(crate) fn impact_table(columns: &[Vec<Row>], intervals: &[f64]) -> String {
     let mut header = vec!["quantity".to_owned()];
     header.extend((1..=columns.len()).map(|number| format!("impact {number}")));
     header.push("unit".to_owned());
-    let shown = |value: f64| match value.is_finite() {
-        true => six_digits(value),
-        false => "-".to_owned(),
-    };
     let line = |name: &str, values: Vec<f64>, unit: &str| {
         let mut line = vec![name.replace('_', " ")];
         line.extend(values.into_iter().map(shown));
@@ -96,8 +93,8 @@ pub(crate) fn impact_table(columns: &[Vec<Row>], intervals: &[f64]) -> String {
 
 /// A value as it was given: six digits without zeros at the end.
 pub(crate) fn given(value: f64) -> String {
-    let text = six_digits(value);
-    match text.contains('.') && !text.contains('e') {
+    let text = with_digits(value, 6);
+    match text.contains('.') && !text.contains('·') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
     }

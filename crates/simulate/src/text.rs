@@ -5,6 +5,7 @@ use crate::motion::{MotionOutcome, MovingImpact, Samples};
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::table::write::csv_text;
+use windfall_files::text::number::plain;
 use windfall_files::text::table::{finding_lines, table_text};
 
 /// A value of an impact: name, value (NaN where there is none), unit.
@@ -51,7 +52,7 @@ pub fn text_of_simulation(impact: &SimulatedImpact) -> String {
             ("nominal_restitution", _) => "restitution (nominal, the parameter)".to_owned(),
             (name, _) => name.replace('_', " "),
         };
-        vec![name, six_digits(value), unit.to_owned()]
+        vec![name, shown(value), unit.to_owned()]
     });
     format!(
         "simulated: {}, contact ends at {}\n\n{}\n{}",
@@ -75,17 +76,12 @@ pub fn findings_text(findings: &[FindingOutcome]) -> String {
 /// Below this a number of a table is rounding of zero; SI.
 const ROUNDING: f64 = 1e-15;
 
-/// Six significant digits.
-pub fn six_digits(value: f64) -> String {
-    let size = value.abs();
-    if size < ROUNDING {
-        return "0".to_owned();
+/// A number by the rule of the terminal.
+pub(crate) fn shown(value: f64) -> String {
+    match value.abs() < ROUNDING {
+        true => "0".to_owned(),
+        false => plain(value),
     }
-    if !(1e-4..1e6).contains(&size) {
-        return format!("{value:.5e}");
-    }
-    let decimals = (5 - size.log10().floor() as i32).clamp(0, 12) as usize;
-    format!("{value:.decimals$}")
 }
 
 /// A simulated impact as CSV, one row, units in the header.

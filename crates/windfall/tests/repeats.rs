@@ -199,6 +199,10 @@ fn closed_form_template_is_a_campaign() {
     let dir = tempfile::tempdir().unwrap();
     let campaign = dir.path().join("campaign");
     write_template(TemplateKind::Repeats, &campaign).unwrap();
+    // With the mass by somebody who says so.
+    let path = campaign.join("campaign.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("\"200 g\"", "\"0.2 kg\"")).unwrap();
     let outcome = fit(&campaign);
     assert_eq!((outcome.impacts.len(), outcome.failed.len()), (0, 6));
 }

@@ -1,7 +1,6 @@
 //! A campaign as the page shows it, whatever it measures.
 
 use crate::campaign_files::{CAMPAIGN_FILES, campaign_version, read_any};
-use crate::rig_form::rig_to_be_given;
 use crate::undo::{History, StepView};
 use serde::Serialize;
 use std::path::Path;
@@ -161,7 +160,7 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
         kind: campaign.kind.name(),
         simulated: campaign.simulated,
         rig: lines_of(&tables, "rig"),
-        rig_asked: rig_to_be_given(directory)?,
+        rig_asked: campaign.rig_asked.map(|asked| asked.problem),
         channels: channels_of(&tables),
         time: files_key(&tables, "time"),
         rate: files_key(&tables, "rate"),

@@ -1,12 +1,12 @@
 //! The newest comparison of laws, population and calibration of a campaign, kept in its store
 //! with what they were made of, so that the page shows them again at once.
 
-use crate::campaign_files::campaign_version;
 use crate::campaign_files::read_any;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use windfall_campaign::recording::digests::recording_digests;
+use windfall_campaign::recording::digests::{campaign_text, recording_digests};
+use windfall_campaign::result::counted::{NOTE_COLUMN, without_notes};
 use windfall_campaign::settings::kind::STORE_FILE;
 use windfall_campaign::store::documents::{DocumentRecord, find_documents};
 use windfall_campaign::store::runs::write_document;
@@ -99,8 +99,16 @@ impl Keeping {
 /// The campaign cannot be read.
 pub fn made_of(directory: &Path) -> Result<MadeOf, Error> {
     // Taken first: a change during the reading makes it outdated, never wrong.
-    let campaign = campaign_version(directory)?;
+    let mut settings: toml::Table = toml::from_str(&campaign_text(directory)?).unwrap_or_default();
+    if let Some(toml::Value::Table(campaign)) = settings.get_mut("campaign") {
+        campaign.remove("note");
+    }
     let (shared, _) = read_any(directory)?;
+    let entries = match shared.group.as_deref() == Some(NOTE_COLUMN) {
+        true => shared.entries.clone(),
+        false => without_notes(&shared.entries),
+    };
+    let campaign = format!("{settings:?} {:?} {entries:?}", shared.specimens);
     let digests = recording_digests(&shared.directory, &shared.files, &shared.entries);
     let lines = digests.iter().map(|(path, digest)| {
         let name = path.strip_prefix(&shared.directory).unwrap_or(path);
@@ -108,7 +116,7 @@ pub fn made_of(directory: &Path) -> Result<MadeOf, Error> {
         format!("{} {digest}\n", name.display())
     });
     Ok(MadeOf {
-        campaign,
+        campaign: digest_text(&campaign),
         recordings: digest_text(&lines.collect::<String>()),
         windfall: windfall_files::provenance::VERSION.to_owned(),
     })
@@ -146,4 +154,37 @@ pub fn kept_results(directory: &Path) -> Result<Vec<KeptResult>, Error> {
 /// Each work has one result that is kept.
 fn key_of(work: &str) -> String {
     digest_text(&format!("kept result of {work}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use windfall_campaign::settings::kind::CAMPAIGN_FILE;
+    use windfall_campaign::settings::template::{TemplateKind, write_template};
+
+    /// What no result rests on is a note: on the campaign, and on an impact that counts.
+    #[test]
+    fn closed_form_notes_make_nothing_stale() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("campaign");
+        write_template(TemplateKind::Carriage, &directory).unwrap();
+        let write = |name: &str, from: &str, to: &str| {
+            let path = directory.join(name);
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(text.contains(from), "{text}");
+            std::fs::write(path, text.replacen(from, to, 1)).unwrap();
+            made_of(&directory).unwrap()
+        };
+        let table = "id,specimen,file,exclude,note\na,fruit-1,a.csv,,\nb,fruit-1,b.csv,yes,\n";
+        std::fs::write(directory.join("impacts.csv"), table).unwrap();
+        let before = made_of(&directory).unwrap();
+        let title = "title = \"My carriage campaign\"\n";
+        let noted = format!("{title}note = \"on a wet day\"\n");
+        assert_eq!(write(CAMPAIGN_FILE, title, &noted), before);
+        assert_eq!(write("impacts.csv", "a.csv,,", "a.csv,,soft"), before);
+        // A result tells why an impact is left out.
+        let excluded = write("impacts.csv", "b.csv,yes,", "b.csv,yes,fell");
+        assert_ne!(excluded, before);
+        assert_ne!(write(CAMPAIGN_FILE, "0.5 kg", "0.6 kg"), excluded);
+    }
 }

@@ -2,7 +2,6 @@
 //! read once, and nothing is kept.
 
 use crate::equal_command::command_of_fit;
-use crate::rig_form::check_rig_given;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -15,6 +14,7 @@ use windfall_campaign::impacts::mass::RigFound;
 use windfall_campaign::pipeline::request::{FitRequest, apply_request};
 use windfall_campaign::recording::extract::extract_entry;
 use windfall_campaign::recording::read::{read_with_gaps, recording_file};
+use windfall_campaign::result::fit_outcome::told;
 use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::model::{ImpactCampaign, ImpactEntry};
 use windfall_campaign::settings::read::read_campaign;
@@ -148,8 +148,8 @@ impl LiveCampaign {
     /// # Errors
     /// The campaign is wrong, or nothing shows the mass of its rig.
     pub fn open(directory: &Path) -> Result<Self, Error> {
-        check_rig_given(directory)?;
         let mut campaign = read_campaign(directory)?;
+        campaign.shared.check_rig_given()?;
         let rig = find_rig(&mut campaign)?;
         Ok(Self { campaign, rig })
     }
@@ -227,7 +227,6 @@ impl LiveImpact {
                 law.aicc = aicc.filter(|_| law.outcome.is_some());
             }
         }
-        let told = |finding: &Finding| FindingOutcome::new(finding.code(), finding.to_string());
         let (start, stop) = ends(&self.recording);
         Ok(LiveOutcome {
             impact: entry.id.clone(),

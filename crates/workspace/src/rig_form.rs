@@ -1,4 +1,4 @@
-//! What a form asks of the rig of each kind of campaign, and whether it was answered.
+//! What a form asks of the rig of each kind of campaign.
 //!
 //! Keys and their meanings are those of the schema of campaign.toml, their order and typical
 //! values those of the commented template.
@@ -8,13 +8,12 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use windfall_campaign::impacts::mass::mass_by_impulse;
-use windfall_campaign::recording::digests::campaign_text;
 use windfall_campaign::result::outcome::MassOutcome;
 use windfall_campaign::settings::kind::{CAMPAIGN_FILE, CampaignKind, campaign_kind};
 use windfall_campaign::settings::read::read_campaign;
+use windfall_campaign::settings::rig_given::{ASKED, KeyLine, rig_section};
 use windfall_campaign::settings::template::{TEMPLATES, TemplateKind, template, write_template};
 use windfall_files::error::Error;
-use windfall_files::option_value::unusable;
 use windfall_files::scratch::Scratch;
 use windfall_files::write_file::replace_file;
 use windfall_numerics::unit::quantity::parse_as;
@@ -35,13 +34,6 @@ const UNITS: [&[&str]; 9] = [
 
 /// Impacts from which a form reads the mass; more change it little.
 const LOOKED_AT: usize = 20;
-
-/// Kinds of rig without whose masses results would be those of an example.
-const ASKED: [TemplateKind; 3] = [
-    TemplateKind::Pendulum,
-    TemplateKind::Carriage,
-    TemplateKind::Drop,
-];
 
 /// What a form asks of one key of `[rig]`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, utoipa::ToSchema)]
@@ -99,7 +91,7 @@ pub fn rig_forms() -> Result<Vec<RigForm>, Error> {
 fn rig_keys(kind: TemplateKind) -> Result<Vec<RigKey>, Error> {
     let schema = schema_of_template(kind);
     let scratch = Scratch::temporary()?;
-    let lines = rig_section(template(kind)).lines().filter_map(key_of_line);
+    let lines = rig_section(template(kind)).lines().filter_map(KeyLine::of);
     let mut keys = Vec::new();
     for line in lines.filter(|line| line.key != "kind") {
         let meaning = schema.described("rig", line.key).unwrap_or_default();
@@ -119,25 +111,6 @@ fn rig_keys(kind: TemplateKind) -> Result<Vec<RigKey>, Error> {
     }
     keep_readable_words(kind, &scratch, &mut keys)?;
     Ok(keys)
-}
-
-/// A line of `[rig]` of a template.
-struct KeyLine<'a> {
-    key: &'a str,
-    value: &'a str,
-    /// Whether it is more than a comment.
-    given: bool,
-}
-
-fn key_of_line(line: &str) -> Option<KeyLine<'_>> {
-    let given = !line.starts_with('#');
-    let (key, rest) = line.trim_start_matches(['#', ' ']).split_once(" = ")?;
-    let value = match rest.strip_prefix('"') {
-        Some(text) => text.split('"').next()?,
-        None => rest.split_whitespace().next()?,
-    };
-    let is_key = !key.is_empty() && key.chars().all(|c| c.is_ascii_lowercase() || c == '_');
-    is_key.then_some(KeyLine { key, value, given })
 }
 
 /// Texts in quotes.
@@ -203,52 +176,6 @@ fn keep_readable_words(
         key.words = words;
     }
     Ok(())
-}
-
-/// The lines below `[rig]`, up to the next table.
-fn rig_section(text: &str) -> &str {
-    let Some(begin) = text.find("\n[rig]") else {
-        return "";
-    };
-    let rest = &text[begin + 1..];
-    let end = rest[1..].find("\n[").map_or(rest.len(), |end| end + 1);
-    &rest[..end]
-}
-
-/// Why the rig of a campaign is not one to calculate with: it is still that of the template.
-///
-/// # Errors
-/// campaign.toml cannot be read.
-pub fn rig_to_be_given(directory: &Path) -> Result<Option<String>, Error> {
-    let text = campaign_text(directory)?.replace("\r\n", "\n");
-    let own = rig_section(&text).trim_end();
-    let untouched = TEMPLATES
-        .iter()
-        .filter(|(_, kind)| ASKED.contains(kind))
-        .find(|(_, kind)| own == rig_section(template(*kind)).trim_end());
-    Ok(untouched.map(|(word, kind)| {
-        let lines = rig_section(template(*kind)).lines().filter_map(key_of_line);
-        let values = lines.filter(|line| line.given && line.key != "kind");
-        let values: Vec<String> = values
-            .map(|line| format!("{} {}", line.key.replace('_', " "), line.value))
-            .collect();
-        format!(
-            "the rig is still the example of a {word} that a new campaign begins with ({}); say \
-             what yours is",
-            values.join(", ")
-        )
-    }))
-}
-
-/// Refuses to calculate with the rig of a template.
-///
-/// # Errors
-/// Nobody has said what the rig is.
-pub fn check_rig_given(directory: &Path) -> Result<(), Error> {
-    match rig_to_be_given(directory)? {
-        None => Ok(()),
-        Some(problem) => Err(unusable("[rig]", problem)),
-    }
 }
 
 /// What impulse and momentum of the first recordings of a campaign say of its mass.
@@ -319,26 +246,5 @@ mod tests {
         }
         assert!(keys("compression").iter().any(|key| key.units.is_empty()));
         assert_eq!(keys("relaxation"), []);
-    }
-
-    #[test]
-    fn rejects_the_rig_of_the_template_until_a_value_is_given() {
-        let folder = tempfile::tempdir().unwrap();
-        let directory = folder.path().join("campaign");
-        write_template(TemplateKind::Carriage, &directory).unwrap();
-        let told = check_rig_given(&directory).unwrap_err().to_string();
-        assert!(told.contains("mass 0.5 kg"), "{told}");
-        let path = directory.join(CAMPAIGN_FILE);
-        let text = std::fs::read_to_string(&path).unwrap();
-        // The same mass, by somebody who says so.
-        std::fs::write(&path, text.replace("\"0.5 kg\"  ", "\"500 g\"  ")).unwrap();
-        check_rig_given(&directory).unwrap();
-        let drops = folder.path().join("drops");
-        write_template(TemplateKind::Drop, &drops).unwrap();
-        assert!(check_rig_given(&drops).is_err());
-        // Nothing is needed of this one.
-        let taps = folder.path().join("taps");
-        write_template(TemplateKind::Acoustic, &taps).unwrap();
-        check_rig_given(&taps).unwrap();
     }
 }

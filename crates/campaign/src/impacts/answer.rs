@@ -5,6 +5,7 @@ use crate::impacts::mass::RigFound;
 use crate::pipeline::request::Reuse;
 use crate::recording::digests::recording_digests;
 use crate::recording::read::recording_path;
+use crate::result::counted::{NOTE_COLUMN, without_notes};
 use crate::settings::kind::STORE_FILE;
 use crate::settings::model::ImpactCampaign;
 use crate::store::documents::{DocumentRecord, find_documents};
@@ -77,7 +78,8 @@ pub fn answer<T: Serialize + DeserializeOwned + PartialEq>(
 
 /// Digest of everything that an answer depends on; `None` where a recording cannot be read.
 ///
-/// All columns of the tables enter: levels, groups, covariates and exclusions are among them.
+/// All columns of the tables enter: levels, groups, covariates and exclusions are among them. A
+/// note enters where the question is about it, or an impact is left out for it.
 fn key(question: &Question) -> Option<String> {
     let campaign = question.campaign;
     let shared = &campaign.shared;
@@ -91,6 +93,11 @@ fn key(question: &Question) -> Option<String> {
             impacts.push(impact_key(campaign, entry, law, &common, digest));
         }
     }
+    let columns = shared.group.iter().chain(&campaign.covariates);
+    let entries = match columns.into_iter().any(|own| own == NOTE_COLUMN) {
+        true => shared.entries.clone(),
+        false => without_notes(&shared.entries),
+    };
     let everything = json!({
         "version": VERSION,
         "command": question.command,
@@ -100,7 +107,7 @@ fn key(question: &Question) -> Option<String> {
         "free": campaign.fit.free,
         "campaign": [&shared.title, &format!("{:?}", (&shared.simulated, &shared.group))],
         "covariates": campaign.covariates,
-        "entries": format!("{:?}", shared.entries),
+        "entries": format!("{entries:?}"),
         "specimens": format!("{:?}", shared.specimens),
         "rig": format!("{:?}", (&question.rig.mass, &question.rig.findings)),
     });

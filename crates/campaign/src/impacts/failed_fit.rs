@@ -1,27 +1,28 @@
 //! What is told of an impact that was cut out of its recording but could not be fitted.
 
+use crate::result::fit_outcome::told;
 use std::error::Error as _;
 use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
+use windfall_files::text::number::plain;
 use windfall_identify::error::Error as IdentifyError;
 use windfall_signal::Finding;
 use windfall_signal::impact::Impact;
 
 /// The contact, and the findings on the signals.
 pub fn found_before(impact: &Impact, findings: &[Finding]) -> Vec<FindingOutcome> {
-    let told = format!(
+    let message = format!(
         "from {:.6} s to {:.6} s{}",
         impact.onset,
         impact.end,
         impact.measured.peak_force.map_or_else(String::new, |peak| {
-            format!(", with a largest force of {peak:.4} N")
+            format!(", with a largest force of {} N", plain(peak))
         })
     );
-    let contact = FindingOutcome::new("contact", told);
-    let findings = findings
-        .iter()
-        .map(|finding| FindingOutcome::new(finding.code(), finding.to_string()));
-    std::iter::once(contact).chain(findings).collect()
+    let contact = FindingOutcome::new("contact", message);
+    std::iter::once(contact)
+        .chain(findings.iter().map(told))
+        .collect()
 }
 
 /// The message of an error; where the bodies do not separate, the likeliest cause in place of

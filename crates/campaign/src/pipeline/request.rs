@@ -148,14 +148,24 @@ fn refit() -> impl clap::builder::TypedValueParser<Value = Reuse> {
 /// Overrides settings of a campaign of impacts with options.
 ///
 /// # Errors
-/// An option cannot be used.
+/// An option cannot be used, or something is to be calculated and nobody has said what the rig
+/// is.
 pub fn apply_request(campaign: &mut ImpactCampaign, request: &FitRequest) -> Result<(), Error> {
     campaign.fit.user = merged(&campaign.fit.user, request)?;
     let fit = &mut campaign.fit;
     laws_and_free(&mut fit.laws, &mut fit.free, &fit.user, request)?;
     apply_options(&mut campaign.fit.options, request)?;
     apply_known(&mut campaign.fit, request)?;
-    apply_group(&mut campaign.shared, request)
+    apply_group(&mut campaign.shared, request)?;
+    check_rig(&campaign.shared, request)
+}
+
+/// Stored results are shown whatever the rig is.
+fn check_rig(campaign: &Campaign, request: &FitRequest) -> Result<(), Error> {
+    match request.reuse {
+        Reuse::Only => Ok(()),
+        Reuse::Unchanged | Reuse::Nothing => campaign.check_rig_given(),
+    }
 }
 
 /// Puts priors and bounds of the request in the place of those of the campaign on the same
@@ -368,7 +378,8 @@ fn columns<'a>(specimens: &'a [Specimen], entries: &'a [ImpactEntry]) -> Vec<&'a
 /// fits some ([`laws_and_free`]).
 ///
 /// # Errors
-/// An option that only impacts have, or one that cannot be used.
+/// An option that only impacts have, or one that cannot be used; something is to be calculated
+/// and nobody has said what the rig is.
 pub fn apply_request_to_measurement(
     campaign: &mut Campaign,
     request: &FitRequest,
@@ -401,5 +412,6 @@ pub fn apply_request_to_measurement(
         let problem = format!("a campaign of kind \"{}\" has no such option", kind.name());
         return Err(unusable((*option).to_owned(), problem));
     }
-    apply_group(campaign, request)
+    apply_group(campaign, request)?;
+    check_rig(campaign, request)
 }

@@ -160,6 +160,7 @@ fn campaign_of(
         title: file.display().to_string(),
         simulated: None,
         note: None,
+        rig_asked: None,
         files,
         group: None,
         specimens: Vec::new(),

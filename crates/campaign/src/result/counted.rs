@@ -137,6 +137,18 @@ pub fn reasons_counted<'a>(impacts: impl IntoIterator<Item = &'a ImpactOutcome>)
     told.join(", ")
 }
 
+/// Entries without notes that no result shows: of an entry that is excluded the note is the
+/// reason.
+pub fn without_notes(entries: &[ImpactEntry]) -> Vec<ImpactEntry> {
+    let mut entries = entries.to_vec();
+    for entry in &mut entries {
+        if excluded(entry).is_none() {
+            entry.cells.retain(|(column, _)| column != NOTE_COLUMN);
+        }
+    }
+    entries
+}
+
 /// Why the user leaves an entry out, if so.
 pub fn excluded(entry: &ImpactEntry) -> Option<FindingOutcome> {
     let cell = |name: &str| {

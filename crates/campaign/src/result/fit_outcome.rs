@@ -193,10 +193,15 @@ fn derived_values(measured: &Measured, fitted: &Named<Option<f64>>) -> Derived {
     (values.collect(), sds.collect(), sources.collect())
 }
 
+/// A finding on the signals.
+pub fn told(finding: &Finding) -> FindingOutcome {
+    FindingOutcome::new(finding.code(), finding.to_string()).of_channel(finding.channel())
+}
+
 fn findings(signal: &[Finding], fit: &Fit) -> Vec<FindingOutcome> {
-    let signal = signal.iter().map(|f| (f.code(), f.to_string()));
-    let fit = fit.findings.iter().map(|f| (f.code(), f.to_string()));
-    let all = signal.chain(fit);
-    all.map(|(code, message)| FindingOutcome::new(code, message))
-        .collect()
+    let fit = fit
+        .findings
+        .iter()
+        .map(|own| FindingOutcome::new(own.code(), own.to_string()).of_channel(own.quantity()));
+    signal.iter().map(told).chain(fit).collect()
 }

@@ -15,6 +15,7 @@ pub mod open_options;
 pub mod read;
 pub mod response;
 pub mod rig;
+pub mod rig_given;
 pub mod schema;
 pub mod shared;
 pub mod tables;

@@ -1,11 +1,13 @@
 //! A campaign: channels, specimens, entries, and of impacts rig and options, in SI units.
 
 use crate::settings::kind::CampaignKind;
+use crate::settings::rig_given::RigAsked;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
 use windfall_contact::expression::LawExpression;
 use windfall_contact::laws::kind::LawKind;
+use windfall_files::error::Error;
 use windfall_files::found::FindingOutcome;
 use windfall_files::name::Name;
 use windfall_formats::open::OpenOptions;
@@ -28,6 +30,8 @@ pub struct Campaign {
     pub simulated: Option<String>,
     /// Remark on the campaign.
     pub note: Option<String>,
+    /// Why nothing is to be calculated with the rig, where it is still that of a template.
+    pub rig_asked: Option<RigAsked>,
     /// How recordings are read.
     pub files: FilePlan,
     /// Column of specimens.csv or impacts.csv by which results are grouped.
@@ -39,6 +43,16 @@ pub struct Campaign {
 }
 
 impl Campaign {
+    /// Refuses to calculate with the rig of a template.
+    ///
+    /// # Errors
+    /// Nobody has said what the rig is.
+    pub fn check_rig_given(&self) -> Result<(), Error> {
+        self.rig_asked
+            .as_ref()
+            .map_or(Ok(()), |asked| Err(asked.error()))
+    }
+
     /// The specimen of an entry, where specimens.csv has it.
     pub fn specimen_of(&self, entry: &ImpactEntry) -> Option<&Specimen> {
         let mut specimens = self.specimens.iter();

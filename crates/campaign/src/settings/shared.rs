@@ -4,6 +4,7 @@ use crate::settings::file::{FilesFile, SummaryFile, TitleFile};
 use crate::settings::files::{check_group, check_placeholders, file_plan};
 use crate::settings::kind::{CAMPAIGN_FILE, CampaignKind, STORE_FILE, UNDO_FILE};
 use crate::settings::model::{Campaign, ChannelPlan};
+use crate::settings::rig_given::rig_asked;
 use crate::settings::tables::{read_impacts, read_specimens};
 use std::path::Path;
 use windfall_files::error::{Error, Place};
@@ -71,6 +72,7 @@ pub fn read_shared(
         title: title.unwrap_or_else(|| directory.display().to_string()),
         simulated: titles.simulated.clone(),
         note: titles.note.clone(),
+        rig_asked: rig_asked(source),
         files,
         group: group.map(|group| group.get_ref().clone()),
         specimens,

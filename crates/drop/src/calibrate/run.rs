@@ -108,6 +108,7 @@ pub fn calibrate(
     progress: Progress,
 ) -> Result<CalibrateOutcome, Error> {
     let campaign = read_drop(directory)?;
+    campaign.shared.check_rig_given()?;
     let figures = request.figures.as_ref().map(|own| &own.directory);
     let outputs = [figures, request.tables.as_ref(), request.card.as_ref()];
     check_outputs(outputs.map(|own| own.map(PathBuf::as_path)))?;

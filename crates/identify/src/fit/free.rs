@@ -74,7 +74,7 @@ pub(crate) fn free_parameters(
     if !nuisances.is_empty() {
         let names: Vec<_> = nuisances
             .iter()
-            .map(|p| nuisance_name(p.target).0)
+            .map(|p| nuisance_name(p.target).0.replace('_', " "))
             .collect();
         findings.push(Finding::Freed {
             quantities: names.join(", "),
@@ -178,14 +178,14 @@ fn nuisances(
         Treatment::Free => free.push(velocity),
         Treatment::Auto if moves || !measured || velocity_is_known => free.push(velocity),
         Treatment::Auto => findings.push(held(
-            "initial_velocity",
+            "initial velocity",
             features.velocity,
             "m/s",
             "the quantities in the cost say little about it, and the motion before contact was measured",
         )),
         Treatment::Fixed if !measured => return Err(Error::UnknownVelocity),
         Treatment::Fixed => {
-            findings.push(held("initial_velocity", features.velocity, "m/s", "as asked"));
+            findings.push(held("initial velocity", features.velocity, "m/s", "as asked"));
         }
     }
     let onset = FreeParameter {
@@ -209,7 +209,7 @@ fn nuisances(
     if has(Quantity::Displacement) {
         match options.displacement_offset {
             Treatment::Auto | Treatment::Free => free.push(offset),
-            Treatment::Fixed => findings.push(held("displacement_offset", 0.0, "m", "as asked")),
+            Treatment::Fixed => findings.push(held("displacement offset", 0.0, "m", "as asked")),
         }
     }
     for own in &mut free {

@@ -1,7 +1,7 @@
 //! From the minimiser's solution to estimates with intervals and findings.
 
 use crate::error::Error;
-use crate::finding::Finding;
+use crate::finding::{Finding, LACK_OF_FIT};
 use crate::fit::estimator::{Coordinate, Target};
 use crate::fit::free::nuisance_name;
 use crate::fit::identifiability::{directions, in_words, trade};
@@ -15,7 +15,7 @@ use crate::rig::kind::Rig;
 use crate::rig::simulate::simulate_rig;
 use crate::samples::Quantity;
 use windfall_contact::laws::kind::Law;
-use windfall_distribution::tail::t_upper_quantile;
+use windfall_distribution::tail::{normal_lower, t_upper_quantile};
 use windfall_numerics::least_squares::Stop;
 
 /// Correlation above which two parameters of the law, and a parameter and a
@@ -175,6 +175,9 @@ impl Plan<'_> {
             for quantity in Quantity::ALL.into_iter().filter(|q| group.holds(*q)) {
                 let residuals = &solution.rows.residuals[g][quantity as usize];
                 let square: f64 = residuals.iter().map(|r| r * r).sum();
+                let runs = runs_test(&standardised(group, quantity, residuals));
+                let as_they_are = runs_test(residuals);
+                let both = runs.zip(as_they_are);
                 out.push(QuantityFit {
                     quantity,
                     samples: residuals.len(),
@@ -183,7 +186,8 @@ impl Plan<'_> {
                     persistence: self.noise.persistence[quantity as usize],
                     rms_residual: (square / residuals.len().max(1) as f64).sqrt(),
                     standardised: self.standardised_rms(g, quantity, residuals),
-                    runs: runs_test(&standardised(group, quantity, residuals)),
+                    runs,
+                    chance: both.map(|(a, b)| normal_lower(a.z.max(b.z))),
                     by_phase: by_phase(group.times(), residuals, (solution.onset, duration)),
                 });
             }
@@ -294,7 +298,8 @@ impl Plan<'_> {
         }
         out.extend(self.remarks_on_priors(solution, &estimates));
         out.extend(self.weak_direction(solution, fit));
-        out.extend(fit.quantities.iter().flat_map(quantity_remarks));
+        let remarks = fit.quantities.iter().flat_map(quantity_remarks);
+        out.extend(remarks.chain(lack_of_fit(&fit.quantities)));
         if let Some(nominal) = fit.law.nominal_restitution() {
             out.push(Finding::NominalRestitution {
                 nominal,
@@ -373,6 +378,22 @@ fn quantity_remarks(found: &QuantityFit) -> Vec<Finding> {
         });
     }
     out
+}
+
+/// The quantity whose residuals are least random, where chance would do as much once in a
+/// hundred impacts; not one of which graver things are said.
+///
+/// # Source
+/// Šidák (1967), J. Am. Stat. Assoc. 62:626, for the least of several probabilities.
+fn lack_of_fit(quantities: &[QuantityFit]) -> Option<Finding> {
+    let tested = quantities.iter().filter_map(|own| Some((own, own.chance?)));
+    let count = tested.clone().count() as f64;
+    let (least, chance) = tested.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let p = -(count * (-chance).ln_1p()).exp_m1();
+    (p < LACK_OF_FIT && quantity_remarks(least).is_empty()).then(|| Finding::LackOfFit {
+        quantity: least.quantity.name(),
+        p,
+    })
 }
 
 /// Means of residuals over their root mean square in equal parts of a contact; zero where there

@@ -47,6 +47,12 @@ pub struct QuantityFit {
     pub standardised: f64,
     /// Runs test of the residuals, where there are enough.
     pub runs: Option<RunsTest>,
+    /// Probability of as few runs by chance: of the residuals made independent or of those as
+    /// they are, whichever is larger; 1.
+    ///
+    /// The persistence of the noise comes from few samples. Where it is found by chance, what
+    /// is made independent with it no longer is, and the residuals as they are show it.
+    pub chance: Option<f64>,
     /// Mean residual, over its root mean square, in equal parts of the contact: what impacts
     /// have in common stands out when they are averaged; 1.
     pub by_phase: [f64; PHASES],

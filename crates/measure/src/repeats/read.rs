@@ -91,7 +91,7 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
     let channels = channel_plans(&source, file.channels.as_ref())?;
     let shared = (&file.campaign, &file.files, &file.summary);
     let kind = CampaignKind::Repeats;
-    let campaign = RepeatsCampaign {
+    let mut campaign = RepeatsCampaign {
         mass: positive_quantity(&source, rig.mass.as_ref(), &mass)?,
         gravity: quantity_from_zero(&source, rig.gravity.as_ref(), &gravity)?
             .unwrap_or(STANDARD_GRAVITY),
@@ -108,6 +108,12 @@ pub fn read_repeats(directory: &Path) -> Result<RepeatsCampaign, Error> {
     };
     for entry in &campaign.shared.entries {
         energy_of(&campaign, entry)?;
+    }
+    // Where the tables have all energies, the mass of [rig] is not used.
+    let tables = |entry| energy_with(&campaign, entry, None).is_ok();
+    let entries = &campaign.shared.entries;
+    if !entries.is_empty() && entries.iter().all(tables) {
+        campaign.shared.rig_asked = None;
     }
     Ok(campaign)
 }
@@ -189,13 +195,22 @@ fn family(source: &TomlSource, file: &ComparisonFile) -> Result<Family, Error> {
 /// # Errors
 /// Neither is known, or a cell is no positive number.
 pub fn energy_of(campaign: &RepeatsCampaign, entry: &ImpactEntry) -> Result<f64, Error> {
+    energy_with(campaign, entry, campaign.mass)
+}
+
+/// * `all`: mass that falls where the entry has none; kg
+fn energy_with(
+    campaign: &RepeatsCampaign,
+    entry: &ImpactEntry,
+    all: Option<f64>,
+) -> Result<f64, Error> {
     let file = campaign.shared.directory.join("impacts.csv");
     let place = Place::at(&file, entry.line);
     let cell = |name, unit| cell_quantity(&entry.cells, name, unit, &place);
     if let Some(energy) = cell("energy", "J")? {
         return Ok(energy);
     }
-    let mass = cell("mass", "kg")?.or(campaign.mass);
+    let mass = cell("mass", "kg")?.or(all);
     match (cell("drop_height", "m")?, mass) {
         (Some(height), Some(mass)) => Ok(mass * campaign.gravity * height),
         _ => Err(Error::from(CampaignError::EnergyUnknown { place })),

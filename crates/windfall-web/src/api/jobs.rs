@@ -26,7 +26,6 @@ use windfall_workspace::campaign_view::{check_work, name_of};
 use windfall_workspace::equal_command::{command_of_fit, command_of_population};
 use windfall_workspace::kept_work::{KEPT, Keeping, kept_results, made_of};
 use windfall_workspace::results_table::write_results_table;
-use windfall_workspace::rig_form::check_rig_given;
 
 /// A job to start.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -71,7 +70,6 @@ impl JobGiven {
     fn run(&self, directory: PathBuf, job: &Job) -> Result<JobWork, Error> {
         let progress = |done: usize, all: usize| job.progress(done, all);
         check_work(&directory)?;
-        check_rig_given(&directory)?;
         Ok(match self.work {
             Work::Fit => {
                 let outcome = fit_any(&directory, &self.fit(), &progress)?;

@@ -144,9 +144,10 @@ export interface FigureGiven {
 }
 export interface FileBeside { file: string; now: string; before: string; }
 export interface FindingKind {
-  code: string; severity: Severity; message: string; laws: string[]; impacts: string[]; of: number | null;
+  code: string; severity: Severity; message: string; laws: string[]; channel: string | null; impacts: string[];
+  of: number | null;
 }
-export interface FindingOutcome { code: string; severity: Severity; message: string; }
+export interface FindingOutcome { code: string; severity: Severity; message: string; channel: string | null; }
 export interface FitOptionsView {
   quantities: string[]; weights: string; noise: string; intervals: string; onset: string; initial_velocity: string;
   displacement_offset: string; end: string; free: string[];
