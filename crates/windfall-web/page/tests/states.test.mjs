@@ -278,10 +278,12 @@ test("a fit of which nothing comes says why", async () => {
     const text = await readFile(file, "utf8");
     await writeFile(file, text.replace("[rig]\n", "[rig]\n# As measured on the bench.\n"));
     await fit.click();
-    await page.getByText(/^Fitted; \d+ failures below\.$/).waitFor();
+    const told = page.getByRole("region", { name: "Messages" }).locator(".note", { hasText: /Fitted; \d+ failures below\./ });
+    await told.waitFor();
     const rows = page.getByRole("region", { name: "Failures" }).locator("tbody tr");
     await rows.nth(1).waitFor();
-    await page.getByRole("button", { name: "Close this message" }).first().click();
+    // That of the next kind is another.
+    await told.getByRole("button", { name: "Close this message" }).click();
   }
   assert.deepEqual(view.troubles.splice(0), []);
 });
