@@ -858,6 +858,12 @@ fn a_campaign_made_in_the_page_has_what_was_put_in_and_no_examples() {
         added.json()["specimens"]["rows"].as_array().unwrap().len(),
         1
     );
+    // The rig of the template is nobody's until somebody says that it is theirs.
+    let rig = json!({"keys": {
+        "inertia": "0.01435 kg m^2", "arm": "0.505 m", "mass": "0.11 kg", "centre_of_mass": "0.3 m",
+    }});
+    let given = running.page("PUT", "/api/campaigns/mine/rig", Some("*"), &rig);
+    assert_eq!(given.status, 200, "{}", given.text());
     let mine = fitted(&folder.path().join("mine"), &[]);
     let bench = fitted(&campaign, &[]);
     assert_eq!(mine["failed"], json!([]));
