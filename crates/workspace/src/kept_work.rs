@@ -16,6 +16,9 @@ use windfall_files::provenance::{digest_text, time_now};
 /// Work whose newest result is kept, by the names of the commands.
 pub const KEPT: [&str; 3] = ["laws", "population", "calibrate"];
 
+/// The table of the store that holds them, and its column of names.
+const DOCUMENTS: (&str, &str) = ("documents", "item");
+
 /// What a result was made of.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize, utoipa::ToSchema)]
 pub struct MadeOf {
@@ -67,7 +70,7 @@ impl Keeping {
         })
     }
 
-    /// Keeps the result in the place of the one of before.
+    /// Keeps the result in the place of the one of before; one that says the same stays.
     ///
     /// # Errors
     /// The store is damaged, foreign, newer, or cannot be written.
@@ -80,6 +83,17 @@ impl Keeping {
             command: self.command,
             result: serde_json::to_value(result).map_err(unwritable)?,
         };
+        // One that is damaged is replaced.
+        let store = self.directory.join(STORE_FILE);
+        let before: Vec<Option<KeptResult>> =
+            find_documents(&store, &[key_of(self.work)], DOCUMENTS).unwrap_or_default();
+        let same = |before: &KeptResult| {
+            (&before.made_of, &before.command, &before.result)
+                == (&kept.made_of, &kept.command, &kept.result)
+        };
+        if before.iter().flatten().any(same) {
+            return Ok(());
+        }
         let record = DocumentRecord {
             key: key_of(self.work),
             kind: "kept".to_owned(),
@@ -89,7 +103,7 @@ impl Keeping {
             document: serde_json::to_string(&kept).map_err(unwritable)?,
             values: Vec::new(),
         };
-        write_document(&self.directory.join(STORE_FILE), &record)
+        write_document(&store, &record)
     }
 }
 
@@ -147,7 +161,7 @@ pub fn kept<T: Serialize, E>(
 /// The store is damaged, foreign or newer.
 pub fn kept_results(directory: &Path) -> Result<Vec<KeptResult>, Error> {
     let keys = KEPT.map(key_of);
-    let found = find_documents(&directory.join(STORE_FILE), &keys, ("documents", "item"))?;
+    let found = find_documents(&directory.join(STORE_FILE), &keys, DOCUMENTS)?;
     Ok(found.into_iter().flatten().collect())
 }
 

@@ -92,7 +92,7 @@ test("the laws of an impact stand side by side, and a finding names its law", as
 
 test("the mass of a template is not taken for that of the rig", async () => {
   await visit(page, "#/c/cart/impact");
-  await page.getByText("mass 0.5 kg").waitFor();
+  await page.getByText("mass = 0.5 kg").waitFor();
   await page.getByRole("link", { name: "Give the rig" }).click();
   const rig = page.getByRole("region", { name: "The rig" });
   const write = rig.getByRole("button", { name: "Write the rig into campaign.toml" });
@@ -109,7 +109,7 @@ test("the mass of a template is not taken for that of the rig", async () => {
   assert.match(text, /^mass = "500 g"$/m);
   assert.match(text, /^driving_acceleration = "0 m\/s\^2"$/m);
   await visit(page, "#/c/cart/impact");
-  await page.getByText("mass 0.5 kg").waitFor({ state: "detached" });
+  await page.getByText("mass = 0.5 kg").waitFor({ state: "detached" });
 });
 
 test("a new campaign is asked for its rig, of every kind", async () => {

@@ -179,7 +179,7 @@ test("a new campaign: a file is imported, its channels mapped, an impact added a
   // The mass of the template is nobody's: it is asked for. Inertia over arm squared of the
   // pendulum that was simulated is 0.01435/0.505² kg.
   await title("Impact stoss-1");
-  await page.getByText("mass 0.5 kg").waitFor();
+  await page.getByText("mass = 0.5 kg").waitFor();
   await page.getByRole("link", { name: "Give the rig" }).click();
   const rig = page.getByRole("region", { name: "The rig" });
   await rig.getByLabel("Mass (needed)").fill("56.27");
