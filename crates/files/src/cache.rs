@@ -4,9 +4,10 @@
 //! Nothing depends on an entry. One that is damaged, or that somebody else made, is none; a
 //! folder that cannot be written keeps nothing; files of other names are never touched.
 
+use crate::error::Error;
 use crate::provenance::digest_bytes;
-use crate::write_file::{partial_of, sweep};
-use std::fs::{Metadata, create_dir, read_dir, remove_file, rename, symlink_metadata};
+use crate::write_file::replace_file;
+use std::fs::{Metadata, create_dir, read_dir, remove_file, symlink_metadata};
 use std::io::{Read, Result as IoResult, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -91,21 +92,16 @@ fn name_of(key: &str) -> String {
     digest_bytes(key.as_bytes()) + ENTRY
 }
 
-fn write_entry(path: &Path, value: &[u8]) -> IoResult<()> {
+fn write_entry(path: &Path, value: &[u8]) -> Result<(), Error> {
     if symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
-        return Err(std::io::ErrorKind::AlreadyExists.into());
+        let taken = std::io::ErrorKind::AlreadyExists.into();
+        return Err(Error::access(path, "write", taken));
     }
-    sweep(path);
-    let (partial, mut file) = partial_of(path)?;
-    let written = file
-        .write_all(HEAD)
-        .and_then(|()| file.write_all(digest_bytes(value).as_bytes()))
-        .and_then(|()| file.write_all(value))
-        .and_then(|()| rename(&partial, path));
-    if written.is_err() {
-        let _ = remove_file(&partial);
-    }
-    written
+    replace_file(path, |file| {
+        file.write_all(HEAD)?;
+        file.write_all(digest_bytes(value).as_bytes())?;
+        file.write_all(value)
+    })
 }
 
 /// Removes the oldest entries of a folder until the others have at most that many bytes.

@@ -61,9 +61,8 @@ const WRITERS: &[[&str; 2]] = &[
     ["OpenOptions", "new"],
 ];
 
-/// Source files that may do so: the writer itself, what can be calculated again, uploads in
-/// pieces, and files that grow
-/// while a scene or an engine runs.
+/// Source files that may do so: the writer itself, the cache of what can be calculated again,
+/// uploads in pieces, and files that grow while a scene or an engine runs.
 const WAY_OUT: &[&str] = &[
     "crates/files/src/cache.rs",
     "crates/files/src/write_file.rs",
