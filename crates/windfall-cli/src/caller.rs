@@ -4,8 +4,10 @@
 //! So what another program hears is kept per thread, and commands may run at once.
 
 use std::cell::RefCell;
+use std::ffi::OsString;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use windfall_files::text::quote::command;
 
 /// Told by any thread how many items of how many are done; its answer says whether the work
 /// goes on.
@@ -28,6 +30,28 @@ struct Caller {
 thread_local! {
     /// The program that called, if one did.
     static CALLER: RefCell<Option<Caller>> = const { RefCell::new(None) };
+}
+
+thread_local! {
+    /// The words of the command that runs on this thread, without the name of the program.
+    static WORDS: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+/// From now on, the command on this thread is this one.
+///
+/// * `words`: the command line, beginning with the name of the program
+pub(crate) fn begin(words: &[OsString]) {
+    let words = words.iter().skip(1);
+    WORDS.set(
+        words
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect(),
+    );
+}
+
+/// The command on this thread, as it was given.
+pub(crate) fn told() -> String {
+    WORDS.with_borrow(|words| command(&words.iter().map(String::as_str).collect::<Vec<_>>()))
 }
 
 /// Does work for another program.

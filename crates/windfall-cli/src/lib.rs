@@ -86,6 +86,7 @@ pub fn commands() -> clap::Command {
 
 fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
     let words: Vec<OsString> = words.into_iter().collect();
+    caller::begin(&words);
     let matches = grouped(Arguments::command()).try_get_matches_from(&words);
     Arguments::from_arg_matches(&matches.map_err(|error| with_nearest(error, &words))?)
 }

@@ -57,11 +57,14 @@ pub struct Keeping {
 impl Keeping {
     /// Before the work begins: a change of the campaign meanwhile makes the result outdated.
     ///
-    /// * `work`: one of [`KEPT`]
     /// * `command`: the command that does it
     ///
-    /// Nothing where the campaign cannot be read, which the work will tell.
+    /// Nothing where the result is none of [`KEPT`], or the campaign cannot be read, which the
+    /// work will tell.
     pub fn begin(directory: &Path, work: &'static str, command: String) -> Option<Self> {
+        if !KEPT.contains(&work) {
+            return None;
+        }
         Some(Self {
             directory: directory.to_path_buf(),
             made_of: made_of(directory).ok()?,

@@ -1,13 +1,12 @@
 //! `windfall laws`
 
 use crate::args::laws::LawsArguments;
+use crate::caller::told;
 use crate::progress::with_bar;
 use crate::show::{show, tell_unused};
 use windfall_campaign::pipeline::request::{FitRequest, Reuse};
-use windfall_files::text::quote::path_word;
 use windfall_population::ranking::run::rank_campaign;
 use windfall_population::ranking::text::{csv_of_laws, text_of_laws};
-use windfall_workspace::equal_command::command_of_fit;
 use windfall_workspace::kept_work::kept;
 
 /// Ranks laws over a campaign and shows the table.
@@ -26,9 +25,8 @@ pub fn run(arguments: &LawsArguments) -> anyhow::Result<()> {
         ..FitRequest::default()
     };
     let directory = &arguments.directory;
-    let told = command_of_fit(&["laws", &path_word(directory)], &request);
     let rank = || with_bar(|progress| rank_campaign(directory, &request, progress));
-    let work = || kept(directory, ("laws", told), rank);
+    let work = || kept(directory, ("laws", told()), rank);
     let outcome = show(&arguments.shown, work, text_of_laws, csv_of_laws)?;
     tell_unused(arguments.shown.format, &outcome.failed);
     Ok(())

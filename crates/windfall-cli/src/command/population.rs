@@ -2,17 +2,16 @@
 
 use crate::args::format::Format;
 use crate::args::population::PopulationArguments;
+use crate::caller::told;
 use crate::progress::with_bar;
 use crate::show::{message, show, tell_failures};
 use windfall_campaign::pipeline::request::{FitRequest, Reuse};
 use windfall_cards::read_card::write_card;
 use windfall_files::error::Error;
 use windfall_files::progress::quiet;
-use windfall_files::text::quote::path_word;
 use windfall_population::card::card_of_population;
 use windfall_population::run::{PopulationRequest, population};
 use windfall_population::text::{csv_of_population, text_of_population};
-use windfall_workspace::equal_command::command_of_population;
 use windfall_workspace::kept_work::kept;
 
 /// Estimates a population and shows it.
@@ -37,8 +36,6 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         detail: arguments.detail.clone(),
         card: arguments.card.clone(),
     };
-    let shown = path_word(&request.directory);
-    let told = command_of_population(&shown, &request.fit, &request.covariates);
     let estimate = || {
         let outcome = with_bar(|progress| population(&request, progress)).map_err(tell_failures)?;
         if let Some(path) = &request.card {
@@ -46,7 +43,7 @@ pub fn run(arguments: &PopulationArguments) -> anyhow::Result<()> {
         }
         Ok::<_, Error>(outcome)
     };
-    let work = || kept(&request.directory, ("population", told), estimate);
+    let work = || kept(&request.directory, ("population", told()), estimate);
     let outcome = show(
         &arguments.shown,
         work,

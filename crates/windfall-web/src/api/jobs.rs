@@ -24,7 +24,7 @@ use windfall_report::run::{ReportRequest, report_campaign};
 use windfall_report::stored_card::CARD_FILE;
 use windfall_workspace::campaign_view::{check_work, name_of};
 use windfall_workspace::equal_command::{command_of_fit, command_of_population};
-use windfall_workspace::kept_work::{KEPT, Keeping, kept_results, made_of};
+use windfall_workspace::kept_work::{Keeping, kept_results, made_of};
 use windfall_workspace::results_table::write_results_table;
 
 /// A job to start.
@@ -159,9 +159,7 @@ fn work(app: &App, given: &JobGiven, directory: PathBuf, job: &Arc<Job>) {
         }
     }
     let ending = Ending(job);
-    let work = given.work.name();
-    let keeping = KEPT.contains(&work).then_some(());
-    let keeping = keeping.and_then(|()| Keeping::begin(&directory, work, job.view().command));
+    let keeping = Keeping::begin(&directory, given.work.name(), job.view().command);
     let result = given.run(directory.clone(), job);
     let done = result.is_ok();
     job.end(result, |error| app.told(error));
