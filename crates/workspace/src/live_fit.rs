@@ -134,13 +134,8 @@ pub struct LiveOutcome {
     pub seconds: f64,
 }
 
-/// The part of a recording that a live fit uses.
-struct ReadImpact {
-    campaign: ImpactCampaign,
-    entry: ImpactEntry,
-    impact: Impact,
-    findings: Vec<Finding>,
-}
+/// An impact in a recording, and what the signals say of themselves.
+type FoundImpact = (Impact, Vec<Finding>);
 
 impl LiveCampaign {
     /// Reads a campaign of single impacts.
@@ -209,15 +204,11 @@ impl LiveImpact {
     /// that cannot be fitted is reported in the outcome.
     pub fn refit(&self, request: &LiveRequest, shown: &str) -> Result<LiveOutcome, Error> {
         let begin = Instant::now();
-        let ReadImpact {
-            campaign,
-            entry,
-            impact,
-            findings,
-        } = self.read(request)?;
+        let (campaign, (impact, findings)) = self.read(request)?;
+        let entry = &campaign.shared.entries[0];
         let laws = campaign.fit.laws.iter().map(|law| {
             let own = (&campaign, &self.rig.rig);
-            let fitted = fit_law(own, &entry, (&impact, &findings), law);
+            let fitted = fit_law(own, entry, (&impact, &findings), law);
             self.live_law(&campaign, &impact, law.kind.name(), fitted, request.series)
         });
         let mut laws: Vec<LiveLaw> = laws.collect();
@@ -242,7 +233,7 @@ impl LiveImpact {
             },
             laws,
             findings: findings.iter().map(told).collect(),
-            command: equal_command(&campaign, &entry, shown, &request.fit),
+            command: equal_command(&campaign, entry, shown, &request.fit),
             seconds: begin.elapsed().as_secs_f64(),
         })
     }
@@ -252,24 +243,20 @@ impl LiveImpact {
     /// # Errors
     /// Those of [`LiveImpact::refit`]; a law cannot be fitted.
     pub fn figure(&self, request: &LiveRequest) -> Result<Figure, Error> {
-        let ReadImpact {
-            campaign,
-            entry,
-            impact,
-            findings,
-        } = self.read(request)?;
+        let (campaign, (impact, findings)) = self.read(request)?;
+        let entry = &campaign.shared.entries[0];
         let rig = &self.rig.rig;
         let laws = campaign.fit.laws.iter();
-        let fitted = laws.map(|law| fit_law((&campaign, rig), &entry, (&impact, &findings), law));
+        let fitted = laws.map(|law| fit_law((&campaign, rig), entry, (&impact, &findings), law));
         let outcomes = fitted.collect::<Result<Vec<ImpactOutcome>, Error>>()?;
         let outcomes: Vec<&ImpactOutcome> = outcomes.iter().collect();
         let used = (rig, campaign.fit.options.end, &campaign.fit.user[..]);
         Ok(figure_of_impact(&entry.id, &impact, &outcomes, used))
     }
 
-    /// The impact in the part of the recording that is asked for, and the campaign with the
-    /// options that are.
-    fn read(&self, request: &LiveRequest) -> Result<ReadImpact, Error> {
+    /// The campaign with the options that are asked for, and the impact in that part of its
+    /// recording, with what the signals say of themselves.
+    fn read(&self, request: &LiveRequest) -> Result<(ImpactCampaign, FoundImpact), Error> {
         let mut campaign = self.campaign.clone();
         apply_request(&mut campaign, &request.fit)?;
         // What resamples or draws takes long, and is for the whole campaign.
@@ -277,17 +264,13 @@ impl LiveImpact {
         if let IntervalMethod::Bootstrap | IntervalMethod::Posterior = method {
             *method = IntervalMethod::Asymptotic;
         }
-        let mut entry = campaign.shared.entries[0].clone();
+        let entry = &mut campaign.shared.entries[0];
         entry.from = request.from.or(entry.from);
         entry.to = request.to.or(entry.to);
-        let mass = self.rig.rig.effective_mass();
-        let (impact, findings) = extract_entry(&campaign, &entry, &self.recording, Some(mass))?;
-        Ok(ReadImpact {
-            campaign,
-            entry,
-            impact,
-            findings,
-        })
+        let mass = Some(self.rig.rig.effective_mass());
+        let entry = &campaign.shared.entries[0];
+        let found = extract_entry(&campaign, entry, &self.recording, mass)?;
+        Ok((campaign, found))
     }
 
     fn live_law(

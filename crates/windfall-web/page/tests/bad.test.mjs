@@ -5,7 +5,19 @@ import assert from "node:assert/strict";
 import { mkdir, readFile, rm, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { accessible, fits, launch, open, pendulum, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
+import {
+  accessible,
+  end,
+  fits,
+  launch,
+  open,
+  pendulum,
+  pictures,
+  scratch,
+  serve,
+  visit,
+  windfall,
+} from "./helpers.mjs";
 
 let place;
 let server;
@@ -20,11 +32,7 @@ before(async () => {
   browser = await launch("--disable-3d-apis");
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 /** A page with its own window; the server is asked for a new one, as its token is spent. */
 let shared;

@@ -4,7 +4,19 @@ import assert from "node:assert/strict";
 import { copyFile, readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { accessible, fits, launch, open, pendulum, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
+import {
+  accessible,
+  end,
+  fits,
+  launch,
+  open,
+  pendulum,
+  pictures,
+  scratch,
+  serve,
+  visit,
+  windfall,
+} from "./helpers.mjs";
 
 let browser, place, server, page, troubles;
 
@@ -33,11 +45,7 @@ before(async () => {
   ({ page, troubles } = await open(browser, server, { expected: (words) => /\/api\/campaigns\/cart\/(outline|refit)/.test(words) }));
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 test("the overview has the list that the command prints, the gravest first, with counts and links", async () => {
   const printed = await windfall("fit", join(place.directory, "apples"));

@@ -235,6 +235,20 @@ export async function fits(page, where) {
   await page.setViewportSize(WIDE);
 }
 
+/** A view at rest: as it should be for everybody, and its pictures. */
+export async function atRest(page, name) {
+  await accessible(page, name);
+  await fits(page, name);
+  await pictures(page, name);
+}
+
+/** Ends what the tests of a file began. */
+export async function end({ browser, server, place }) {
+  await browser?.close();
+  await server?.stop();
+  await place?.remove();
+}
+
 /** The number below which `part` of the values lie. */
 export function quantile(values, part) {
   const sorted = [...values].sort((a, b) => a - b);

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile, rename, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { accessible, fits, launch, open, pendulum, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
+import { atRest, end, fits, launch, open, pendulum, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
 
 let place;
 let server;
@@ -24,17 +24,9 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
-async function inspect(name) {
-  await accessible(page, name);
-  await fits(page, name);
-  await pictures(page, name);
-}
+const inspect = (name) => atRest(page, name);
 
 /** Writes a file as an editor does: whole, or not at all. */
 async function edit(file, text) {

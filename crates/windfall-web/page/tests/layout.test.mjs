@@ -5,7 +5,19 @@ import assert from "node:assert/strict";
 import { readdir } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { accessible, fits, launch, open, pendulum, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
+import {
+  accessible,
+  end,
+  fits,
+  launch,
+  open,
+  pendulum,
+  pictures,
+  scratch,
+  serve,
+  visit,
+  windfall,
+} from "./helpers.mjs";
 
 let place, server, browser, view, page;
 
@@ -20,11 +32,7 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 test("regression and surface begin with results that a command fitted", async () => {
   const tables = join(place.directory, "apples/tables");

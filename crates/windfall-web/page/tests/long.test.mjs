@@ -9,7 +9,7 @@ import assert from "node:assert/strict";
 import { readdir, readFile, stat, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { accessible, fits, launch, open, pendulum, pictures, quantile, scratch, serve } from "./helpers.mjs";
+import { accessible, end, fits, launch, open, pendulum, pictures, quantile, scratch, serve } from "./helpers.mjs";
 
 const TIMED = process.env.TIMED === "1";
 const SAMPLES = 10_000_000;
@@ -46,11 +46,7 @@ before(async () => {
   browser = await launch();
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 /** Opens the recording in a page of its own; milliseconds from the click to its picture. */
 async function opened() {

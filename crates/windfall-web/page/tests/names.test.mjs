@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { launch, open, pendulum, scratch, serve, visit, windfall } from "./helpers.mjs";
+import { end, launch, open, pendulum, scratch, serve, visit, windfall } from "./helpers.mjs";
 
 const HIT = "document.documentElement.id='HIT'";
 const PIECES = [
@@ -64,11 +64,7 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 /** What is on the page that windfall did not put there, and the words of its elements. */
 async function look() {

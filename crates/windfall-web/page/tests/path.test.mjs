@@ -6,6 +6,8 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import {
   accessible,
+  atRest,
+  end,
   fits,
   germanRecording,
   launch,
@@ -34,18 +36,9 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
-/** A view at rest: as it should be for everybody, and its pictures. */
-async function inspect(name) {
-  await accessible(page, name);
-  await fits(page, name);
-  await pictures(page, name);
-}
+const inspect = (name) => atRest(page, name);
 
 const title = (words) => page.getByRole("heading", { level: 1, name: words }).waitFor();
 

@@ -12,7 +12,7 @@ import { copyFile, cp, mkdir, readFile, writeFile } from "node:fs/promises";
 import { dirname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { accessible, fits, launch, open, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
+import { atRest, end, launch, open, scratch, serve, visit, windfall } from "./helpers.mjs";
 
 const REPOSITORY = join(dirname(fileURLToPath(import.meta.url)), "../../../..");
 const DATA = resolve(process.env.WINDFALL_DATA ?? join(REPOSITORY, "../shared/data"));
@@ -35,17 +35,9 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
-async function inspect(name) {
-  await accessible(page, name);
-  await fits(page, name);
-  await pictures(page, name);
-}
+const inspect = (name) => atRest(page, name);
 
 const title = (words) => page.getByRole("heading", { level: 1, name: words }).waitFor();
 const button = (name, options) => page.getByRole("button", { name, ...options });

@@ -5,7 +5,7 @@ import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { KINDS, STATES, everyCampaign } from "./campaigns.mjs";
-import { NARROW, WIDE, accessible, launch, open, scratch, serve, visit } from "./helpers.mjs";
+import { accessible, end, launch, NARROW, open, scratch, serve, visit, WIDE } from "./helpers.mjs";
 
 let place;
 let server;
@@ -26,11 +26,7 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 /** Views of a kind. */
 const viewsOf = (kind) => [

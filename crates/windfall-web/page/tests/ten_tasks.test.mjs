@@ -7,7 +7,7 @@ import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { germanRecording, launch, open, pendulum, scratch, serve, visit, windfall } from "./helpers.mjs";
+import { end, germanRecording, launch, open, pendulum, scratch, serve, visit, windfall } from "./helpers.mjs";
 import { KINDS } from "./campaigns.mjs";
 
 const ODD = "specimen-04";
@@ -47,11 +47,7 @@ before(async () => {
   await view.context.grantPermissions(["clipboard-read", "clipboard-write"]);
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 const title = (words) => page.getByRole("heading", { level: 1, name: words }).waitFor();
 const button = (name, within = page) => within.getByRole("button", { name, exact: true });

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { accessible, fits, launch, open, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
+import { accessible, end, fits, launch, open, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
 
 let place;
 let server;
@@ -31,11 +31,7 @@ before(async () => {
   page = view.page;
 });
 
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-  await place?.remove();
-});
+after(() => end({ browser, server, place }));
 
 /** Twelve apples, struck twice each. */
 async function campaign() {

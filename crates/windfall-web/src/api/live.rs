@@ -14,6 +14,7 @@ use windfall_draw::files::FigureFormat;
 use windfall_draw::theme::FigureTheme;
 use windfall_draw::width::Width;
 use windfall_draw::xy::drawing_of_figure;
+use windfall_files::option_value::unusable;
 use windfall_workspace::campaign_view::name_of;
 use windfall_workspace::live_fit::{LiveOutcome, LiveRequest};
 use windfall_workspace::measured_view::measured_figure;
@@ -120,9 +121,21 @@ pub(crate) struct FigureGiven {
     item: Option<String>,
     /// Width in print: "84 mm"; as large as a screen shows it if left out.
     width: Option<String>,
-    /// "svg", "pdf" or "png".
-    #[schema(example = "pdf")]
-    format: String,
+    /// Kind of file.
+    format: Format,
+}
+
+/// A kind of file of figures.
+#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+#[schema(as = FigureFormat)]
+pub(crate) enum Format {
+    /// Vectors for pages and editors.
+    Svg,
+    /// Vectors for journals.
+    Pdf,
+    /// 300 dots per inch.
+    Png,
 }
 
 /// A figure as `fit --figures` draws it, as a download.
@@ -137,15 +150,10 @@ pub(crate) async fn figure(
     if let Some(fit) = &asked.fit {
         fit.check()?;
     }
-    let (format, kind) = match asked.format.as_str() {
-        "svg" => (FigureFormat::Svg, "image/svg+xml"),
-        "pdf" => (FigureFormat::Pdf, "application/pdf"),
-        "png" => (FigureFormat::Png, "image/png"),
-        _ => {
-            return Err(Problem::request(
-                "the format of a figure is svg, pdf or png",
-            ));
-        }
+    let (format, kind) = match asked.format {
+        Format::Svg => (FigureFormat::Svg, "image/svg+xml"),
+        Format::Pdf => (FigureFormat::Pdf, "application/pdf"),
+        Format::Png => (FigureFormat::Png, "image/png"),
     };
     let bytes = app.on_campaign(id, move |app, directory| {
         let width = asked
@@ -154,14 +162,12 @@ pub(crate) async fn figure(
             .map(str::parse::<Width>)
             .transpose()?;
         let figure = match (asked.fit, asked.figure) {
-            (Some(fit), _) => {
+            (Some(fit), None) => {
                 let impact = app.cache.impact(directory, &fit.impact)?;
                 impact.figure(&fit.request())?
             }
-            (None, name) => {
-                let name = name.unwrap_or_default();
-                measured_figure(directory, asked.item.as_deref(), &name)?
-            }
+            (None, Some(name)) => measured_figure(directory, asked.item.as_deref(), &name)?,
+            _ => return Err(unusable("figure", "give either the name of one or a fit")),
         };
         format.of_svg(&drawing_of_figure(&figure, width).svg(FigureTheme::Light.colours()))
     });

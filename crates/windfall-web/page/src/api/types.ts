@@ -139,8 +139,9 @@ export interface FeaturesOutcome {
   directions: DirectionOutcome[]; chi_square: number; freedom: number; p: number | null; widened: number;
   fitted: FittedFeature[]; along: AlongOutcome[]; converged: boolean; evaluations: number;
 }
+export type FigureFormat = "svg" | "pdf" | "png";
 export interface FigureGiven {
-  fit?: Refit | null; figure?: string | null; item?: string | null; width?: string | null; format: string;
+  fit?: Refit | null; figure?: string | null; item?: string | null; width?: string | null; format: FigureFormat;
 }
 export interface FileBeside { file: string; now: string; before: string; }
 export interface FindingKind {
