@@ -114,7 +114,7 @@ pub enum Finding {
     },
     /// The residuals of a channel are hardly random.
     #[error(
-        "the residuals of {quantity} are hardly random (runs test, {}): of 500 impacts that a law describes, up to five have this by chance",
+        "the residuals of {quantity} change sign less often than chance explains (runs test, {}); of 500 impacts that a law describes, up to five have this by chance",
         p_value(*p)
     )]
     LackOfFit {

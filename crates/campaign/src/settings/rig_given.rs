@@ -60,7 +60,7 @@ pub fn rig_asked(source: &TomlSource) -> Option<RigAsked> {
         place: Place::at(&source.path, line.map_or(0, |line| line + 1)),
         problem: format!(
             "the rig is still the example that `windfall new {word}` writes ({}); say what yours \
-             is (if it is this one, remove the remarks behind its values)",
+             is (if these values are yours, remove the comments after them)",
             values.join(", ")
         ),
     })
