@@ -183,7 +183,12 @@ fn reference_lammps_a_checkpoint_that_cannot_be_used_is_refused_and_stays() {
         }
         let there = names.iter().filter_map(|name| whole.get_key_value(*name));
         let cut = there.map(|(name, bytes)| {
-            std::fs::write(engine.join(name), &bytes[..bytes.len() / 3]).unwrap();
+            // A rank goes on behind its checkpoint: a third of its pulses may be all that counts.
+            let left = match name.starts_with("pulses") {
+                true => 0,
+                false => bytes.len() / 3,
+            };
+            std::fs::write(engine.join(name), &bytes[..left]).unwrap();
         });
         assert!(cut.count() > 0, "{names:?} of {:?}", whole.keys());
         let before = contents(&engine);
