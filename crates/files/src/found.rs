@@ -51,10 +51,12 @@ pub struct FindingOutcome {
     pub channel: Option<Name>,
 }
 
-/// A finding as files hold it. Its severity is that of today, whatever stands beside it.
+/// A finding as files hold it. Its severity is the graver of what is stored and what its code has
+/// today.
 #[derive(Deserialize)]
 struct StoredFinding {
     code: Name,
+    severity: Option<Severity>,
     message: String,
     #[serde(default)]
     channel: Option<Name>,
@@ -62,7 +64,9 @@ struct StoredFinding {
 
 impl From<StoredFinding> for FindingOutcome {
     fn from(stored: StoredFinding) -> Self {
+        let today = Severity::of(&stored.code);
         Self {
+            severity: stored.severity.map_or(today, |own| own.min(today)),
             channel: stored.channel,
             ..Self::new(&stored.code, stored.message)
         }
@@ -212,9 +216,10 @@ mod tests {
         assert_eq!((found.mean, found.sd, found.n), (10000002.0, Some(1.0), 3));
     }
 
-    /// Stores of earlier versions hold no severity, and what they hold is not asked.
+    /// Stores of earlier versions hold no severity. A reason that keeps an impact out stays as
+    /// grave as it was found.
     #[test]
-    fn closed_form_a_stored_finding_has_the_severity_of_its_code() {
+    fn closed_form_a_stored_finding_is_at_least_as_grave_as_its_code() {
         for text in [
             r#"{"code":"clipped","message":"at 5 V"}"#,
             r#"{"code":"clipped","severity":"note","message":"at 5 V"}"#,
@@ -223,6 +228,9 @@ mod tests {
             assert_eq!(found, FindingOutcome::new("clipped", "at 5 V"));
             assert_eq!(found.severity, Severity::Wrong);
         }
+        let graver = r#"{"code":"late-channel","severity":"wrong","message":"80 µs late"}"#;
+        let found: FindingOutcome = serde_json::from_str(graver).unwrap();
+        assert_eq!(found.severity, Severity::Wrong);
     }
 
     #[test]

@@ -11,7 +11,8 @@ use std::sync::LazyLock;
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// A number must not be used: it is biased, or no estimate.
+    /// A number must not be used: it is biased, or no estimate. An impact with such a finding does
+    /// not count.
     Wrong,
     /// A number may be off, or says less than it seems to: look before you use it.
     Doubtful,
@@ -59,7 +60,6 @@ const WRONG: &[&str] = &[
     "contact-at-start", "gap-in-contact",
     // Fits
     "no-convergence", "at-bound", "prior-contradicted", "prior-excludes-data", "singular",
-    "divergences",
     // Which impacts count
     "impossible-restitution", "negative-absorbed-energy", "impulse-contradicts-momentum",
     "impossible-velocity", "undetermined", "contradicts-others", "bench-gain",
@@ -92,7 +92,8 @@ const DOUBTFUL: &[&str] = &[
     // Fits
     "bounds-hold", "prior-outweighed", "mostly-prior", "noise-contradicted", "correlated",
     "weak-direction", "structured-residuals", "misfit", "bench-left-out", "mass-left-out",
-    "open-interval", "failed-replicates", "not-mixed", "intervals-asymptotic",
+    "open-interval", "failed-replicates", "divergences", "not-mixed",
+    "intervals-asymptotic",
     // Which impacts count
     "bench-delay", "law-misfit", "bench-far", "law-velocity-trend", "order-trend", "joint-scatter",
     "time-of-day-unread", "bench-cause", "same-recording", "mean-and-median-differ",

@@ -18,8 +18,8 @@ pub enum Finding {
     },
     /// A parameter ended on its bound.
     #[error(
-        "{parameter} ended on its {side} bound {}{}: the data call for a value beyond it, or do not determine it",
-        Shown(*bound, unit),
+        "{} ended on its {side} bound {}{}: the data call for a value beyond it, or do not determine it",
+        in_a_sentence(parameter), Shown(*bound, unit),
         if *given { ", which was given" } else { "" }
     )]
     AtBound {
@@ -36,8 +36,8 @@ pub enum Finding {
     },
     /// Data and prior contradict each other.
     #[error(
-        "the prior of {parameter}, {} ± {}, and the data, which alone say {} ± {}, are {apart:.1} of their deviations apart{}",
-        Shown(prior.0, unit), Shown(prior.1, unit), Shown(data.0, unit), Shown(data.1, unit),
+        "the prior of {}, {} ± {}, and the data, which alone say {} ± {}, are {apart:.1} of their deviations apart{}",
+        in_a_sentence(parameter), Shown(prior.0, unit), Shown(prior.1, unit), Shown(data.0, unit), Shown(data.1, unit),
         if *pulled {
             ": the estimate lies between two values of which one is wrong"
         } else {
@@ -60,8 +60,8 @@ pub enum Finding {
     },
     /// A prior says more than the data.
     #[error(
-        "{:.0} % of what is known of {parameter} is its prior: the impact hardly tells it",
-        100.0 * share
+        "{:.0} % of what is known of {} is its prior: the impact hardly tells it",
+        100.0 * share, in_a_sentence(parameter)
     )]
     MostlyPrior {
         /// Name of the parameter.
@@ -89,7 +89,9 @@ pub enum Finding {
     },
     /// Two parameters move together.
     #[error(
-        "{first} and {second} can hardly be separated in this impact (correlation {correlation:.4})"
+        "{} and {} can hardly be separated in this impact (correlation {correlation:.4})",
+        in_a_sentence(first),
+        in_a_sentence(second)
     )]
     Correlated {
         /// One parameter.
@@ -173,7 +175,9 @@ pub enum Finding {
     ComputedRate,
     /// A parameter is hard to separate from another.
     #[error(
-        "{quantities} alone hardly separate {parameter} from {partner}: {parameter} would be known {factor:.0} times better if {partner} were known; the least determined combination is {direction}"
+        "{quantities} alone hardly separate {0} from {1}: {0} would be known {factor:.0} times better if {1} were known; the least determined combination is {direction}",
+        in_a_sentence(parameter),
+        in_a_sentence(partner)
     )]
     WeakDirection {
         /// A parameter of the law.
@@ -189,7 +193,8 @@ pub enum Finding {
     },
     /// A profile has no end on one side.
     #[error(
-        "the {side} end of the interval of {parameter} is open: the data do not exclude any value tried on that side"
+        "the {side} end of the interval of {} is open: the data do not exclude any value tried on that side",
+        in_a_sentence(parameter)
     )]
     OpenInterval {
         /// Name of the parameter.
@@ -219,7 +224,8 @@ pub enum Finding {
     },
     /// The chains of a posterior do not agree.
     #[error(
-        "the chains for {parameter} do not agree (R-hat {r_hat:.3}, {draws:.0} independent draws; 1.01 and 400 are required): draw more, or the data do not determine it"
+        "the chains for {} do not agree (R-hat {r_hat:.3}, {draws:.0} independent draws; 1.01 and 400 are required): draw more, or the data do not determine it",
+        in_a_sentence(parameter)
     )]
     NotMixed {
         /// Name of the parameter.
@@ -299,6 +305,14 @@ impl Finding {
             Self::MissingQuantity { .. } => "missing-quantity",
             Self::NominalRestitution { .. } => "nominal-restitution",
         }
+    }
+}
+
+/// A parameter in a sentence: those of a law as they are called, what is estimated besides in words.
+pub fn in_a_sentence(name: &str) -> String {
+    match name {
+        "displacement_offset" | "initial_velocity" => name.replace('_', " "),
+        _ => name.to_owned(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::{Rounded, Times};
 use crate::filter::butterworth::Band;
-use windfall_numerics::written::plain;
+use windfall_numerics::written::{percent, plain, value_and_sd, with_digits};
 
 /// Something about the signals that a reader of the results must know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -117,7 +117,8 @@ pub enum Finding {
         until: f64,
     },
     #[error(
-        "channel '{channel}' reads {offset:.4} ± {offset_sd:.4} N before contact; this offset has been subtracted"
+        "channel '{channel}' reads {} N before contact; this offset has been subtracted",
+        value_and_sd(*offset, Some(*offset_sd))
     )]
     OffsetRemoved {
         channel: String,
@@ -190,7 +191,8 @@ pub enum Finding {
         kept: f64,
     },
     #[error(
-        "a drift of {slope:.4} ± {slope_sd:.4} N/s in channel '{channel}', from the quiet stretches before and after contact, has been subtracted"
+        "a drift of {} N/s in channel '{channel}', from the quiet stretches before and after contact, has been subtracted",
+        value_and_sd(*slope, Some(*slope_sd))
     )]
     DriftRemoved {
         channel: String,
@@ -209,7 +211,8 @@ pub enum Finding {
         why: &'static str,
     },
     #[error(
-        "a hum of {frequency:.0} Hz and {amplitude:.3} ± {sd:.3} N in channel '{channel}' has been subtracted, as seen before and after contact. Look at the earth and the shield of its cable"
+        "a hum of {frequency:.0} Hz and {} N in channel '{channel}' has been subtracted, as seen before and after contact. Look at the earth and the shield of its cable",
+        value_and_sd(*amplitude, Some(*sd))
     )]
     HumRemoved {
         channel: String,
@@ -218,8 +221,9 @@ pub enum Finding {
         sd: f64,
     },
     #[error(
-        "channel '{channel}' reads {change:.4} ± {sd:.4} N more after contact than before ({:.1} % of the peak): something rests on the sensor, or its zero sags as that of a piezoelectric sensor does. The zero before contact is used",
-        100.0 * share
+        "channel '{channel}' reads {} N more after contact than before ({} of the peak): something rests on the sensor, or its zero sags as that of a piezoelectric sensor does. The zero before contact is used",
+        value_and_sd(*change, Some(*sd)),
+        percent(*share)
     )]
     ZeroShift {
         channel: String,
@@ -248,7 +252,9 @@ pub enum Finding {
         raised: f64,
     },
     #[error(
-        "force and mass times acceleration disagree: impulses as {impulse_ratio:.3} ± {impulse_ratio_sd:.3} to 1, peaks as {peak_ratio:.3} ± {peak_ratio_sd:.3} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts"
+        "force and mass times acceleration disagree: impulses as {} to 1, peaks as {} to 1; check both calibrations, the mass, and that the accelerometer sits where the force acts",
+        value_and_sd(*impulse_ratio, Some(*impulse_ratio_sd)),
+        value_and_sd(*peak_ratio, Some(*peak_ratio_sd))
     )]
     AccelerometerDisagrees {
         impulse_ratio: f64,
@@ -273,9 +279,8 @@ pub enum Finding {
         size: f64,
     },
     #[error(
-        "'{force}' comes {:.1} ± {:.1} µs {} than '{displacement}', by Newton's law: a delay between the channels shifts stiffness and damping. Sample both at once, and look for missing rows",
-        1e6 * delay.abs(),
-        1e6 * sd,
+        "'{force}' comes {} µs {} than '{displacement}', by Newton's law: a delay between the channels shifts stiffness and damping. Sample both at once, and look for missing rows",
+        value_and_sd(1e6 * delay.abs(), Some(1e6 * sd)),
         if *delay > 0.0 { "later" } else { "earlier" }
     )]
     LateChannel {
@@ -285,7 +290,8 @@ pub enum Finding {
         sd: f64,
     },
     #[error(
-        "'{force}' is {gain:.3} ± {sd:.3} times mass times the acceleration of '{displacement}': look at the sensitivity of the force, at the mass or inertia, at the length of a count, and for missing rows"
+        "'{force}' is {} times mass times the acceleration of '{displacement}': look at the sensitivity of the force, at the mass or inertia, at the length of a count, and for missing rows",
+        value_and_sd(*gain, Some(*sd))
     )]
     ImpulseMismatch {
         force: String,
@@ -294,9 +300,9 @@ pub enum Finding {
         sd: f64,
     },
     #[error(
-        "'{force}' and '{displacement}' are not of one motion: the force, integrated twice, departs from the displacement by {:.1} µm ({:.1} % of the largest). Samples may be missing, the arm may ring, or the sensor may not see the whole force",
-        1e6 * misfit,
-        100.0 * share
+        "'{force}' and '{displacement}' are not of one motion: the force, integrated twice, departs from the displacement by {} µm ({} of the largest). Samples may be missing, the arm may ring, or the sensor may not see the whole force",
+        with_digits(1e6 * misfit, 2),
+        percent(*share)
     )]
     MotionMismatch {
         force: String,

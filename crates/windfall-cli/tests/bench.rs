@@ -495,3 +495,51 @@ fn a_mass_from_impulse_follows_the_sensitivity() {
     assert_eq!(status, Some(2), "{told}");
     assert!(told.contains("impulse of this force already"), "{told}");
 }
+
+/// Changes the force of a recording, its first column; V.
+fn change_force(folder: &Path, name: &str, fault: impl Fn(f64) -> f64) {
+    let path = folder.join("campaign/raw").join(name);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (header, body) = text.split_once('\n').unwrap();
+    let row = |line: &str| {
+        let (force, position) = line.split_once(',').unwrap();
+        format!("{},{position}\n", fault(force.parse().unwrap()))
+    };
+    let rows: String = body.lines().map(row).collect();
+    std::fs::write(&path, format!("{header}\n{rows}")).unwrap();
+}
+
+/// The mass of the campaign is that of the impacts that count: one is clipped, one has another
+/// unit, one is excluded.
+#[test]
+fn conserves_a_mass_from_impulse_without_impacts_that_do_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "simulate carriage --law kuwabara-kono(k=753599,c=1524) --mass 0.3kg --velocity \
+                1m/s --specimens 12 --unweighed --recordings campaign";
+    let (status, _, told) = windfall(&line.replace("                ", ""), folder.path());
+    assert_eq!(status, Some(0), "{told}");
+    change_force(folder.path(), "specimen-01.csv", |force| force.min(0.8));
+    change_force(folder.path(), "specimen-02.csv", |force| 2.0 * force);
+    let path = folder.path().join("campaign/impacts.csv");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let rows: Vec<&str> = text.lines().collect();
+    let table = |rows: &[&str]| {
+        let marked = rows.iter().map(|row| match row.split(',').next() {
+            Some("id") => format!("{row},exclude\n"),
+            Some("specimen-03") => format!("{row},yes\n"),
+            _ => format!("{row},\n"),
+        });
+        std::fs::write(&path, marked.collect::<String>()).unwrap();
+        fitted(folder.path())
+    };
+    let all = table(&rows);
+    let good = table(&[&rows[..1], &rows[4..]].concat());
+    assert_eq!(all["effective_mass"], good["effective_mass"]);
+    assert_eq!(all["effective_mass"]["impacts"], 9);
+    let findings = all["findings"].as_array().unwrap().iter();
+    let none: Vec<&str> = findings
+        .filter(|own| own["code"] == "no-mass")
+        .filter_map(|own| own["message"].as_str()?.split(' ').next())
+        .collect();
+    assert_eq!(none, ["specimen-01", "specimen-02", "specimen-03"]);
+}

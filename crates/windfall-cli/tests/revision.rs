@@ -126,7 +126,7 @@ fn pinned_numbers_are_those_of_the_revision() {
         digest(&drops, &[]),
     ];
     let expected = (
-        12,
+        13,
         [
             "a181b92d447f09bf",
             "404fe045a1a00105",

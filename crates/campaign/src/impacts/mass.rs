@@ -3,12 +3,16 @@
 use crate::error::CampaignError;
 use crate::recording::extract::extract_recording;
 use crate::recording::read::recording_path;
+use crate::result::counted::{FAR, FEWEST, NEAR, excluded};
 use crate::result::outcome::MassOutcome;
 use crate::settings::model::{ImpactCampaign, ImpactEntry, MassPlan, RigPlan};
 use rayon::prelude::*;
 use windfall_files::error::Error;
-use windfall_files::found::FindingOutcome;
+use windfall_files::found::{FindingOutcome, robust_spread};
+use windfall_files::severity::Severity;
+use windfall_files::text::number::plain;
 use windfall_identify::rig::kind::{Carriage, Rig};
+use windfall_signal::Finding;
 use windfall_signal::impact::Measured;
 use windfall_signal::mass::{mass_from_impulse, mass_from_impulses};
 use windfall_signal::uncertain::Uncertain;
@@ -27,7 +31,7 @@ pub struct RigFound {
 /// The rig of a campaign as it is told.
 ///
 /// A mass "from impulse" is one mass for the whole campaign: the weighted mean
-/// over all impacts that show impulse and velocities.
+/// over all impacts that count and show impulse and velocities.
 ///
 /// # Errors
 /// No impact shows the mass.
@@ -68,9 +72,10 @@ pub fn mass_by_impulse(campaign: &ImpactCampaign) -> Option<MassOutcome> {
             ..
         } => Uncertain::new(driving_acceleration, driving_acceleration_sd),
     };
-    let entries = campaign.shared.entries.par_iter();
-    let found = entries.filter_map(|entry| measured(campaign, entry, driving).ok());
-    let found: Vec<Measured> = found.collect();
+    let found: Vec<Measured> = all_measured(campaign, driving)
+        .into_iter()
+        .flatten()
+        .collect();
     let mass = mass_from_impulses(&found, driving)?;
     Some(MassOutcome {
         value: mass.value,
@@ -93,12 +98,7 @@ fn known(rig: Rig, sd: f64) -> RigFound {
 }
 
 fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFound, Error> {
-    let measured: Vec<Result<Measured, String>> = campaign
-        .shared
-        .entries
-        .par_iter()
-        .map(|entry| measured(campaign, entry, driving).map_err(|error| error.to_string()))
-        .collect();
+    let measured = all_measured(campaign, driving);
     let found: Vec<Measured> = measured.iter().flatten().copied().collect();
     let Some(mass) = mass_from_impulses(&found, driving) else {
         let first = measured
@@ -138,14 +138,56 @@ fn from_impulse(campaign: &ImpactCampaign, driving: Uncertain) -> Result<RigFoun
     })
 }
 
-/// What an impact that shows the mass measured.
+/// What each impact measured that shows the mass, or why it takes no part: an impact that does not
+/// count does not weigh, nor does one that is far from the others.
+fn all_measured(campaign: &ImpactCampaign, driving: Uncertain) -> Vec<Result<Measured, String>> {
+    let entries = campaign.shared.entries.par_iter();
+    let all = entries.map(|entry| measured(campaign, entry, driving));
+    let mut all: Vec<Result<Measured, String>> = all.collect();
+    let mass = |own: &Measured| mass_from_impulse(own, driving).map(|mass| mass.value.ln());
+    let masses: Vec<f64> = all
+        .iter()
+        .flatten()
+        .filter_map(|own| mass(own).ok())
+        .collect();
+    let Some((middle, deviation)) = robust_spread(&masses) else {
+        return all;
+    };
+    let far = (FAR * deviation).max(NEAR);
+    for own in &mut all {
+        let away = own
+            .as_ref()
+            .map_or(0.0, |own| mass(own).map_or(0.0, |mass| mass - middle));
+        if masses.len() >= FEWEST && away.abs() > far {
+            let ratio = plain(away.exp());
+            *own = Err(format!(
+                "it says {ratio} times the median of all: look at its signals"
+            ));
+        }
+    }
+    all
+}
+
+/// What an impact that shows the mass measured, or why it takes no part.
 fn measured(
     campaign: &ImpactCampaign,
     entry: &ImpactEntry,
     driving: Uncertain,
-) -> Result<Measured, Error> {
-    let (impact, _) = extract_recording(campaign, entry, None)?;
-    mass_from_impulse(&impact.measured, driving)
-        .map(|_| impact.measured)
-        .map_err(|source| Error::signal(recording_path(&campaign.shared.files, entry), source))
+) -> Result<Measured, String> {
+    if let Some(reason) = excluded(entry) {
+        return Err(reason.message);
+    }
+    let extracted = extract_recording(campaign, entry, None);
+    let (impact, findings) = extracted.map_err(|error| error.to_string())?;
+    let wrong = |own: &&Finding| Severity::of(own.code()) == Severity::Wrong;
+    if let Some(finding) = findings.iter().find(wrong) {
+        return Err(finding.to_string());
+    }
+    match mass_from_impulse(&impact.measured, driving) {
+        Ok(_) => Ok(impact.measured),
+        Err(source) => {
+            let path = recording_path(&campaign.shared.files, entry);
+            Err(Error::signal(path, source).to_string())
+        }
+    }
 }

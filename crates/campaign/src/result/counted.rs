@@ -8,24 +8,13 @@ use itertools::Itertools;
 use std::collections::HashMap;
 use windfall_files::found::{FailureOutcome, FindingOutcome, robust_spread};
 use windfall_files::named::grouped;
+use windfall_files::severity::Severity;
 use windfall_files::table::data::{EXCLUDE_COLUMN, excludes};
-use windfall_files::text::number::{unit_text, value_and_sd};
+use windfall_files::text::number::{percent, plain, unit_text, value_and_sd, with_digits};
 use windfall_identify::rig::kind::Rig;
 
 /// Column of impacts.csv that says why.
 pub const NOTE_COLUMN: &str = "note";
-
-/// Findings after which the values of a fit are no estimates.
-const NO_ESTIMATES: [&str; 8] = [
-    "gap-in-contact",
-    "no-convergence",
-    "singular",
-    "at-bound",
-    "prior-contradicted",
-    "clipped",
-    "contact-at-start",
-    "shaking",
-];
 
 /// Deviations by which a quantity must pass its limit.
 pub(crate) const DEVIATIONS: f64 = 3.0;
@@ -46,11 +35,11 @@ const SHIFT_OF_BOTH: f64 = 0.10;
 /// part of the largest displacement; 1.
 const MOTION: f64 = 0.04;
 /// Fewest impacts of a group with which each is compared.
-const FEWEST: usize = 8;
+pub(crate) const FEWEST: usize = 8;
 /// Robust deviations from the median of its group at which an impact contradicts it.
-const FAR: f64 = 10.0;
+pub(crate) const FAR: f64 = 10.0;
 /// Smallest difference from the other impacts on a fruit that matters, as a logarithm; 1.
-const NEAR: f64 = 0.18;
+pub(crate) const NEAR: f64 = 0.18;
 /// The same from those on other fruit, which differ by nature: a factor of 2.7.
 const SOFT: f64 = 1.0;
 
@@ -63,8 +52,8 @@ impl ImpactOutcome {
 
 /// Sets for each result why it does not count, if so.
 ///
-/// Reasons are: what the user wrote in the column `exclude` of impacts.csv; findings after
-/// which values are no estimates; physics (a restitution above 1, an energy that is not
+/// Reasons are: what the user wrote in the column `exclude` of impacts.csv; findings that call
+/// the numbers [wrong](Severity::Wrong); physics (a restitution above 1, an energy that is not
 /// absorbed but gained, an impulse that is not the change of momentum, a velocity that the
 /// rig cannot have), each beyond three deviations; a stiffness that is not determined; and a
 /// stiffness far from the others (ten robust deviations of its logarithm, and 20 % among
@@ -168,15 +157,15 @@ pub fn excluded(entry: &ImpactEntry) -> Option<FindingOutcome> {
 
 /// What the impact itself says against it.
 fn own_reasons(impact: &ImpactOutcome, rig: &Rig) -> Vec<FindingOutcome> {
-    let mut reasons: Vec<FindingOutcome> = Vec::new();
-    for finding in &impact.findings {
-        let known = reasons.iter().any(|own| own.code == finding.code);
-        if NO_ESTIMATES.contains(&finding.code.as_str()) && !known {
-            reasons.push(finding.clone());
-        }
-    }
+    let wrong = |own: &&FindingOutcome| own.severity == Severity::Wrong;
+    let grave = impact.findings.iter().filter(wrong);
+    let mut reasons: Vec<_> = grave.unique_by(|own| &own.code).cloned().collect();
     reasons.extend(impossible(impact, rig));
     reasons.extend(undetermined(impact));
+    // A finding that is to be doubted where it is small is wrong where it keeps the impact out.
+    for reason in &mut reasons {
+        reason.severity = Severity::Wrong;
+    }
     reasons
 }
 
@@ -206,8 +195,9 @@ fn restitution_outside(impact: &ImpactOutcome) -> Option<FindingOutcome> {
     let room = (DEVIATIONS * sd).max(SLACK);
     (e > 1.0 + room || e < -room).then(|| {
         let told = format!(
-            "the restitution is {e:.3} ± {sd:.3}, and it lies between 0 and 1: the velocity before \
-             or after contact is wrong, as by a drift, a glitch or a false trigger"
+            "the restitution is {}, and it lies between 0 and 1: the velocity before or after \
+             contact is wrong, as by a drift, a glitch or a false trigger",
+            value_and_sd(e, Some(sd))
         );
         FindingOutcome::new("impossible-restitution", told)
     })
@@ -218,9 +208,8 @@ fn energy_gained(impact: &ImpactOutcome) -> Option<FindingOutcome> {
     let (before, _) = signal(impact, "impact_energy")?;
     (lost < -(DEVIATIONS * sd).max(SLACK * before)).then(|| {
         let told = format!(
-            "the absorbed energy is {:.2} ± {:.2} mJ: fruit give no energy",
-            1e3 * lost,
-            1e3 * sd
+            "the absorbed energy is {} mJ: fruit give no energy",
+            value_and_sd(1e3 * lost, Some(1e3 * sd))
         );
         FindingOutcome::new("negative-absorbed-energy", told)
     })
@@ -240,8 +229,10 @@ fn impulse_unbalanced(impact: &ImpactOutcome, rig: &Rig) -> Option<FindingOutcom
     let off = !(1.0 / IMPULSE_RATIO..=IMPULSE_RATIO).contains(&ratio);
     (off && (impulse - change).abs() > room).then(|| {
         let told = format!(
-            "the force has the impulse {impulse:.4} N s where the momentum changes by {change:.4} \
-             N s: the zero of the force, a false trigger, clipping, or a unit"
+            "the force has the impulse {} N s where the momentum changes by {} N s: the zero of \
+             the force, a false trigger, clipping, or a unit",
+            plain(impulse),
+            plain(change)
         );
         FindingOutcome::new("impulse-contradicts-momentum", told)
     })
@@ -260,13 +251,12 @@ fn force_late_or_scaled(impact: &ImpactOutcome) -> Option<FindingOutcome> {
     let limit = if both { SHIFT_OF_BOTH } else { SHIFT };
     (by_delay + by_gain > (DEVIATIONS * sd).max(limit)).then(|| {
         let told = format!(
-            "by Newton's law the force is {:.0} ± {:.0} µs off the displacement ({:.1} % of the \
-             contact) and {gain:.3} ± {gain_sd:.3} times mass × acceleration: the stiffness may be \
-             {:.0} % off",
-            1e6 * delay,
-            1e6 * delay_sd,
-            100.0 * delay.abs() / duration,
-            100.0 * (by_delay + by_gain).exp_m1()
+            "by Newton's law the force is {} µs off the displacement ({} of the contact) and {} \
+             times mass × acceleration: the stiffness may be {} off",
+            value_and_sd(1e6 * delay, Some(1e6 * delay_sd)),
+            percent(delay.abs() / duration),
+            value_and_sd(gain, Some(gain_sd)),
+            percent((by_delay + by_gain).exp_m1())
         );
         let code = match by_delay > by_gain {
             true => "late-channel",
@@ -282,10 +272,10 @@ fn two_motions(impact: &ImpactOutcome) -> Option<FindingOutcome> {
     let (largest, _) = signal(impact, "max_displacement")?;
     (misfit > (DEVIATIONS * noise).max(MOTION * largest)).then(|| {
         let told = format!(
-            "the force, integrated twice, departs from the displacement by {:.1} µm, {:.1} % of the \
+            "the force, integrated twice, departs from the displacement by {} µm, {} of the \
              largest: they are not of one motion",
-            1e6 * misfit,
-            100.0 * misfit / largest
+            with_digits(1e6 * misfit, 2),
+            percent(misfit / largest)
         );
         FindingOutcome::new("motion-mismatch", told)
     })
@@ -295,7 +285,11 @@ fn velocity_beyond(impact: &ImpactOutcome, rig: &Rig) -> Option<FindingOutcome> 
     let most = rig.largest_velocity()?;
     let (v1, sd) = signal(impact, "impact_velocity")?;
     (v1 > most + (DEVIATIONS * sd).max(SLACK * most)).then(|| {
-        let told = format!("the velocity is {v1:.3} m/s, and this pendulum reaches {most:.3} m/s");
+        let told = format!(
+            "the velocity is {} m/s, and this pendulum reaches {} m/s",
+            plain(v1),
+            plain(most)
+        );
         FindingOutcome::new("impossible-velocity", told)
     })
 }
@@ -339,10 +333,10 @@ fn strangers(
                 continue;
             }
             let told = format!(
-                "{name} is {:.3} times the median of its {what}, in which {name} spreads by a factor \
-                 of {:.3} (one robust deviation): look at its signals",
-                (value - median).exp(),
-                deviation.exp()
+                "{name} is {} times the median of its {what}, in which {name} spreads by a factor of \
+                 {} (one robust deviation): look at its signals",
+                plain((value - median).exp()),
+                plain(deviation.exp())
             );
             strange.push((index, FindingOutcome::new("contradicts-others", told)));
         }

@@ -5,6 +5,7 @@ use crate::settings::model::FitPlan;
 use windfall_contact::laws::kind::LawKind;
 use windfall_files::found::{FindingOutcome, robust_spread};
 use windfall_files::text::number::plain;
+use windfall_identify::finding::in_a_sentence;
 use windfall_identify::fit::known::NOTICEABLE;
 use windfall_identify::fit::problem::{Known, Prior};
 use windfall_identify::samples::Quantity;
@@ -73,7 +74,7 @@ fn prior_finding(
     prior: Prior,
     impacts: &[&ImpactOutcome],
 ) -> Option<FindingOutcome> {
-    let (name, law) = (&known.name, kind.name());
+    let (name, law) = (in_a_sentence(&known.name), kind.name());
     let codes = ["prior-contradicted", "prior-outweighed"];
     let apart = count_of(impacts, &codes, &format!("the prior of {name},"));
     if impacts.len() >= FEWEST && 2 * apart > impacts.len() {
@@ -106,7 +107,7 @@ fn bounds_finding(
     if known.range.0.is_infinite() && known.range.1.is_infinite() {
         return None;
     }
-    let name = &known.name;
+    let name = in_a_sentence(&known.name);
     let ended = count_of(impacts, &["at-bound"], &format!("{name} ended"));
     let many = ended >= 2 && ended as f64 > MANY_AT_BOUND * impacts.len() as f64;
     many.then(|| {

@@ -2,7 +2,7 @@
 //! priors.
 
 use crate::error::Error;
-use crate::finding::Finding;
+use crate::finding::{Finding, in_a_sentence};
 use crate::fit::estimator::{Coordinate, FreeParameter, Target};
 use crate::fit::noise::series;
 use crate::fit::problem::{FitOptions, Known, LawProblem, Prior, Treatment};
@@ -74,7 +74,7 @@ pub(crate) fn free_parameters(
     if !nuisances.is_empty() {
         let names: Vec<_> = nuisances
             .iter()
-            .map(|p| nuisance_name(p.target).0.replace('_', " "))
+            .map(|p| in_a_sentence(nuisance_name(p.target).0))
             .collect();
         findings.push(Finding::Freed {
             quantities: names.join(", "),

@@ -1,5 +1,6 @@
 //! Which parameters the data can separate, in words.
 
+use crate::finding::in_a_sentence;
 use nalgebra::{DMatrix, SymmetricEigen};
 use windfall_numerics::written::{unit_text, with_digits};
 
@@ -86,7 +87,7 @@ pub fn in_words(
     let words = parameters.iter().enumerate();
     let words = words.filter(|(i, _)| share(*i) >= WORTH_A_WORD * largest);
     let words = words.map(|(i, (name, value, unit, relative))| {
-        let change = direction.change[i];
+        let (name, change) = (in_a_sentence(name), direction.change[i]);
         match (*relative, *unit) {
             (true, _) => format!("{name} {:+.2} %", 100.0 * change / value),
             (false, "1") => format!("{name} {change:+.3}"),
