@@ -1,6 +1,7 @@
 //! A campaign as the page shows it, whatever it measures.
 
 use crate::campaign_files::{CAMPAIGN_FILES, campaign_version, read_any};
+use crate::table_origin::outdated;
 use crate::undo::{History, StepView};
 use serde::Serialize;
 use std::path::Path;
@@ -22,6 +23,9 @@ use windfall_report::stored_card::CARD_FILE;
 
 /// Directory of tables for regressions and surfaces in a campaign directory.
 pub const TABLES_DIRECTORY: &str = "tables";
+
+/// Table of the campaign's own results in a campaign directory.
+pub const RESULTS_TABLE: &str = "tables/results.csv";
 
 /// A table of text.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, utoipa::ToSchema)]
@@ -104,6 +108,8 @@ pub struct CampaignView {
     pub text: String,
     /// Tables for regressions and surfaces.
     pub tables: Vec<String>,
+    /// Whether the table of results is of other results, or of other tables, than there are now.
+    pub results_table_outdated: bool,
     /// Whether a report was written.
     pub report: bool,
     /// The command that fits the campaign.
@@ -174,6 +180,7 @@ pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
         impacts: table_of(campaign.entries.iter().map(|entry| &entry.cells)),
         text,
         tables: tables_of(directory)?,
+        results_table_outdated: outdated(directory),
         report: directory
             .join(REPORT_DIRECTORY)
             .join("report.html")

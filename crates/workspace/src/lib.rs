@@ -13,5 +13,6 @@ pub mod recording_stretches;
 pub mod results_table;
 pub mod rig_form;
 pub mod scene_runs;
+pub mod table_origin;
 pub mod undo;
 pub mod workspace;

@@ -1,7 +1,10 @@
 //! Results joined with what the tables of the campaign say of impact and specimen: the
 //! table that regressions are made on.
 
-use crate::campaign_view::{CampaignView, TABLES_DIRECTORY, TableView, view_campaign};
+use crate::campaign_view::{
+    CampaignView, RESULTS_TABLE, TABLES_DIRECTORY, TableView, view_campaign,
+};
+use crate::table_origin::note;
 use std::collections::BTreeMap;
 use std::path::Path;
 use windfall_files::confined::path_inside;
@@ -10,9 +13,6 @@ use windfall_files::table::write::{csv_text, unguarded};
 use windfall_files::write_file::write_whole;
 use windfall_measure::any_outcome::AnyOutcome;
 use windfall_report::any_text::csv_of_any;
-
-/// Name of the table in a campaign directory.
-pub const RESULTS_TABLE: &str = "tables/results.csv";
 
 /// Writes results, one line each, joined with impacts.csv and specimens.csv.
 ///
@@ -24,7 +24,10 @@ pub fn write_results_table(directory: &Path, outcome: &AnyOutcome) -> Result<(),
     let path = path_inside(directory, RESULTS_TABLE)?;
     let folder = directory.join(TABLES_DIRECTORY);
     std::fs::create_dir_all(&folder).map_err(|source| Error::access(&folder, "create", source))?;
-    write_whole(&path, text.as_bytes())
+    write_whole(&path, text.as_bytes())?;
+    // Without a note, as where the store is read-only, the table is taken for an old one.
+    let _ = note(directory);
+    Ok(())
 }
 
 /// Results in CSV with further columns, where they have no column of the same name.

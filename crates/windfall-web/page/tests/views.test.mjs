@@ -373,6 +373,13 @@ test("results of long work are still there after a look elsewhere", async () => 
   await title("Table of results");
   await visit(page, "#/c/drops/calibrate");
   await page.getByRole("region", { name: "Parameters by method" }).waitFor();
+  // The member of the family that was looked at is in the address.
+  const along = page.getByRole("slider", { name: "Along the family" });
+  await along.fill("3");
+  await page.waitForFunction(() => location.hash.includes("member=4"));
+  await page.reload();
+  await along.waitFor();
+  assert.equal(await along.inputValue(), "3");
 });
 
 test("the report is written and shown where nothing can run", async () => {
@@ -386,6 +393,21 @@ test("the report is written and shown where nothing can run", async () => {
   const inside = frame.contentFrame();
   await inside.getByRole("heading", { level: 1 }).first().waitFor();
   await inspect("report");
+});
+
+test("the table of results follows what a command has fitted", async () => {
+  const own = join(place.directory, "apples", "tables", "results.csv");
+  const settings = join(place.directory, "apples", "campaign.toml");
+  const text = await readFile(settings, "utf8");
+  await writeFile(settings, text.replace(/^laws = .*$/m, 'laws = ["tsuji"]'));
+  await windfall("fit", join(place.directory, "apples"));
+  assert.ok(!(await readFile(own, "utf8")).includes(",tsuji,"));
+  await visit(page, "#/c/apples/regress");
+  await title("Regression");
+  for (let tries = 0; !(await readFile(own, "utf8")).includes(",tsuji,"); tries++) {
+    assert.ok(tries < 100, "the table is of the other law still");
+    await page.waitForTimeout(100);
+  }
 });
 
 test("nothing went wrong on the way", () => {

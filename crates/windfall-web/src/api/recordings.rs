@@ -18,7 +18,7 @@ use windfall_files::error::Error;
 use windfall_files::provenance::digest_file;
 use windfall_files::table::csv::read_table;
 use windfall_inspect::run::{Inspection, inspect_opened};
-use windfall_workspace::campaign_view::TABLES_DIRECTORY;
+use windfall_workspace::campaign_view::{RESULTS_TABLE, TABLES_DIRECTORY};
 use windfall_workspace::live_cache::recording_inside;
 use windfall_workspace::recording_outline::Outline;
 use windfall_workspace::workspace::{RecordingEntry, recordings_inside, recordings_of};
@@ -169,6 +169,11 @@ pub(crate) async fn upload_table(
     let own = id.clone();
     let folder = app.on_campaign(id, |_, directory| Ok(directory.to_path_buf()));
     let file = format!("{TABLES_DIRECTORY}/{}", asked.file);
+    if file.eq_ignore_ascii_case(RESULTS_TABLE) {
+        return Err(Problem::request(
+            "windfall writes its own results into a table of this name: give yours another one",
+        ));
+    }
     let (path, bytes) = arrive(&app, folder.await?, file.clone(), body).await?;
     let uploaded = app.on_campaign(own, move |_, _| {
         read_table(&path).inspect_err(|_| discard(&path))?;

@@ -44,7 +44,8 @@ export interface CampaignView {
   id: string; version: string; title: string; kind: string; simulated: string | null; rig: [string, string][];
   rig_asked: string | null; channels: ChannelView[]; time: string | null; rate: string | null; laws: string[];
   options: FitOptionsView | null; group: string | null; specimens: TableView; impacts: TableView; text: string;
-  tables: string[]; report: boolean; command: string; note: string | null; undo: StepView | null; redo: StepView | null;
+  tables: string[]; results_table_outdated: boolean; report: boolean; command: string; note: string | null;
+  undo: StepView | null; redo: StepView | null;
 }
 export interface CandidateOutcome {
   height: number; mass: number; fruit: string; impacts: number; drops: number; sds: (number | null)[];
