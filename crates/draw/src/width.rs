@@ -25,7 +25,7 @@ const LEAST_CELL: f64 = 290.0;
 ///
 /// Its letters are 8 pt (raised ones 5.8 pt), its lines at least 0.5 pt, and its panels stand side
 /// by side as far as they fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Width {
     /// µm.
     micrometres: u32,
@@ -35,6 +35,11 @@ impl Width {
     /// The text width of a page, as two columns of a journal have it: 174 mm.
     pub const PAGE: Self = Self {
         micrometres: 174_000,
+    };
+
+    /// Two thirds of it, for a panel that stands alone on a page.
+    pub const ALONE: Self = Self {
+        micrometres: 116_000,
     };
 
     /// In mm.

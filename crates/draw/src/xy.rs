@@ -65,10 +65,14 @@ const LOW: f64 = 100.0;
 const TOGETHER: usize = 4;
 
 /// Draws a figure as elements of a page that is printed at a width, one below the other; its title
-/// describes them.
+/// describes them. A panel that stands alone is narrower.
 pub fn elements_of_figure(figure: &Figure, theme: &Theme, width: Width) -> Vec<String> {
     let labels = &labels_of(figure);
     let panels = panels_of(figure);
+    let width = match panels.len() {
+        1 => width.min(Width::ALONE),
+        _ => width,
+    };
     let part = |(place, own): (usize, &[GridPanel])| {
         let part = Part {
             first: place * TOGETHER,

@@ -3,7 +3,7 @@
 
 use crate::read::Drop;
 use windfall_draw::xy::{Figure, Mark, Panel, Series, Side, Style};
-use windfall_files::text::number::plain;
+use windfall_files::text::number::{plain, with_digits};
 use windfall_signal::bounce::train::{Bounce, BounceTrain};
 use windfall_signal::ringing::model::{Ringing, amplitude_at, ringing_at};
 
@@ -73,7 +73,7 @@ fn overview(train: &BounceTrain) -> Panel {
         Series::new("contact", Style::Shade, contacts(train, 0.0)),
     ];
     let mark = |(number, bounce): (usize, &Bounce)| Mark {
-        label: format!("{}: {:.3} N", number + 1, bounce.peak),
+        label: format!("{}: {} N", number + 1, plain(bounce.peak)),
         at: (1e3 * bounce.peak_time, bounce.peak),
         side: Side::BelowRight,
     };
@@ -92,17 +92,21 @@ fn detection(train: &BounceTrain) -> Panel {
         .map(|force| force.clamp(-cut, cut));
     let force = points(train, &force.collect::<Vec<f64>>(), 0.0, ALL);
     let smoothed = format!(
-        "contact force, smoothed over {:.2} ms",
-        1e3 * train.smoothing
+        "contact force, smoothed over {} ms",
+        plain(1e3 * train.smoothing)
     );
-    let limits = format!("a contact begins above {on:.2} N, is over below {off:.2} N");
+    let limits = format!(
+        "a contact begins above {} N, is over below {} N",
+        with_digits(on, 2),
+        with_digits(off, 2)
+    );
     let at = train.times.first().map_or(0.0, |time| 1e3 * time);
     let all = vec![
         Series::new(smoothed, Style::Line, force),
         Series::new("onset", Style::Upright, onsets(train)),
         Series::new(limits, Style::Level, vec![(at, on), (at, off)]),
     ];
-    let force = format!("force, cut at ±{cut:.2}");
+    let force = format!("force, cut at ±{}", plain(cut));
     Panel::new(("time", "ms"), (&force, "N"), all)
 }
 
@@ -146,9 +150,9 @@ fn ringing_series(ringing: &Ringing, zero: f64, to: f64) -> Vec<Series> {
     let lower = curve(&|time| -amplitude_at(ringing, time));
     envelope.extend(lower.into_iter().rev());
     let label = format!(
-        "ringing: period {:.3} ms, damping ratio {:.4}",
-        1e3 * ringing.period.value,
-        ringing.damping_ratio.value
+        "ringing: period {} ms, damping ratio {}",
+        plain(1e3 * ringing.period.value),
+        plain(ringing.damping_ratio.value)
     );
     let line = curve(&|time| ringing_at(ringing, time));
     vec![

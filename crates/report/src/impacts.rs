@@ -65,16 +65,18 @@ pub fn sections_of_campaign(
             .chain(figure_of_predictions(law, &impacts))
             .chain(figure_of_stacked(law, &impacts))
             .chain(figure_of_trends(law, &impacts, &outcome.trends, &times));
-        sections.push(Section {
+        let section = Section {
             figures: figures.collect(),
             ..Section::of_words(&format!("Figures: {law}"), Vec::new())
-        });
+        };
+        // Of a law under which no impact counts there is nothing to show.
+        sections.extend((!section.figures.is_empty()).then_some(section));
     }
     let first = laws_of(outcome).first().map(|law| of_law(outcome, law));
     if let Some(figure) = first.and_then(|impacts| figure_of_bench(outcome, &impacts)) {
         sections.push(Section {
             figures: vec![figure],
-            ..Section::of_words("Figure: bench", Vec::new())
+            ..Section::of_words("Figures: bench", Vec::new())
         });
     }
     sections.push(examples(campaign, rig, outcome)?);

@@ -11,6 +11,7 @@ const FILM = 1280;
 /** How long the last picture stands: a recorder that is stopped at once loses what it still
  *  encodes; ms. */
 const STANDS = 400;
+const LEAST = 100;
 
 /** What is seen. */
 export interface Look {
@@ -100,7 +101,9 @@ export async function filmOf(
       await show(time);
       draw(time);
     }
-    await new Promise((done) => setTimeout(done, STANDS));
+    // What the last picture came too late by is taken off the time for which it stands.
+    const late = performance.now() - began - (1000 * (to - from)) / speed;
+    await new Promise((done) => setTimeout(done, Math.max(STANDS - Math.max(late, 0), LEAST)));
   } finally {
     recorder.stop();
     look.player.enlarge(null);
