@@ -92,7 +92,7 @@ code { font-size: 0.85em; overflow-wrap: anywhere; }
 @page { margin: 16mm 18mm; }
 @media print { body { max-width: none; padding: 0; font-size: 10pt; line-height: 1.35; }
   nav { display: none; } p, li { orphans: 3; widows: 3; } h2 { margin-top: 1.2rem; }
-  h2, caption, thead { break-after: avoid; } thead { display: table-header-group; }
+  h2, h2 + p, caption, thead { break-after: avoid; } thead { display: table-header-group; }
   tr { break-inside: avoid; } pre { white-space: pre-wrap; font-size: 8pt; overflow: visible; }
   .table { overflow: visible; } table { font-size: 7.5pt; }
   th, td { white-space: normal; padding-right: 0.5em; }

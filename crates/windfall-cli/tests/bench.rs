@@ -465,13 +465,22 @@ fn the_deviation_of_an_estimate_does_not_depend_on_what_is_told() {
     }
 }
 
+/// Impacts of a carriage whose mass is to come from them.
+fn unweighed(specimens: usize) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let law = "kuwabara-kono(k=753599,c=1524)";
+    let line = format!(
+        "simulate carriage --law {law} --mass 0.3kg --velocity 1m/s --specimens {specimens} \
+         --unweighed --recordings campaign"
+    );
+    let (status, _, told) = windfall(&line, folder.path());
+    assert_eq!(status, Some(0), "{told}");
+    folder
+}
+
 #[test]
 fn a_mass_from_impulse_follows_the_sensitivity() {
-    let folder = tempfile::tempdir().unwrap();
-    let line = "simulate carriage --law kuwabara-kono(k=753599,c=1524) --mass 0.3kg --velocity \
-                1m/s --specimens 8 --unweighed --recordings campaign";
-    let (status, _, told) = windfall(&line.replace("                ", ""), folder.path());
-    assert_eq!(status, Some(0), "{told}");
+    let folder = unweighed(8);
     let path = folder.path().join("campaign/campaign.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     let uncertain = |text: &str| {
@@ -513,11 +522,7 @@ fn change_force(folder: &Path, name: &str, fault: impl Fn(f64) -> f64) {
 /// unit, one is excluded.
 #[test]
 fn conserves_a_mass_from_impulse_without_impacts_that_do_not_count() {
-    let folder = tempfile::tempdir().unwrap();
-    let line = "simulate carriage --law kuwabara-kono(k=753599,c=1524) --mass 0.3kg --velocity \
-                1m/s --specimens 12 --unweighed --recordings campaign";
-    let (status, _, told) = windfall(&line.replace("                ", ""), folder.path());
-    assert_eq!(status, Some(0), "{told}");
+    let folder = unweighed(12);
     change_force(folder.path(), "specimen-01.csv", |force| force.min(0.8));
     change_force(folder.path(), "specimen-02.csv", |force| 2.0 * force);
     let path = folder.path().join("campaign/impacts.csv");

@@ -150,18 +150,18 @@ fn all_measured(campaign: &ImpactCampaign, driving: Uncertain) -> Vec<Result<Mea
         .flatten()
         .filter_map(|own| mass(own).ok())
         .collect();
-    let Some((middle, deviation)) = robust_spread(&masses) else {
+    let Some((middle, deviation)) = robust_spread(&masses).filter(|_| masses.len() >= FEWEST)
+    else {
         return all;
     };
     let far = (FAR * deviation).max(NEAR);
     for own in &mut all {
-        let away = own
-            .as_ref()
-            .map_or(0.0, |own| mass(own).map_or(0.0, |mass| mass - middle));
-        if masses.len() >= FEWEST && away.abs() > far {
-            let ratio = plain(away.exp());
+        let away = own.as_ref().ok().and_then(|own| mass(own).ok());
+        let away = away.map_or(0.0, |mass| mass - middle);
+        if away.abs() > far {
             *own = Err(format!(
-                "it says {ratio} times the median of all: look at its signals"
+                "it gives {} times the median mass of all impacts: look at its signals",
+                plain(away.exp())
             ));
         }
     }
