@@ -56,6 +56,8 @@ for (const [part, selector] of [
   for (let round = 0; round < ROUNDS; round++) {
     const view = await open(browser, server, { hash: "#/" });
     await view.page.locator('a[href*="c/many"]').first().waitFor();
+    // The window before this one is being closed.
+    await view.page.waitForTimeout(500);
     times.push(await drawn(view.page, `#/c/many/${part}`, selector));
     await view.context.close();
   }

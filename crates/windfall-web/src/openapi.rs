@@ -7,6 +7,7 @@ use utoipa::openapi::schema::{AdditionalProperties, Object, Schema, SchemaType, 
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
 use utoipa::openapi::{OpenApi as Description, Ref, RefOr};
 use utoipa::{Modify, OpenApi};
+use windfall_workspace::workspace::Detail;
 
 /// The interface.
 #[derive(OpenApi)]
@@ -66,7 +67,7 @@ use utoipa::{Modify, OpenApi};
         crate::api::scenes::history,
         crate::api::scenes::totals,
     ),
-    components(schemas(Problem, CampaignChanged)),
+    components(schemas(Problem, CampaignChanged, Detail)),
     modifiers(&NamedValues, &KeysOfAnswers, &Token)
 )]
 pub(crate) struct Interface;

@@ -149,8 +149,20 @@ pub fn check_work(directory: &Path) -> Result<(), Error> {
 /// # Errors
 /// A file of the campaign is missing or does not say what it must.
 pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
-    // Taken first: a change during the reading makes this version outdated, never wrong.
-    let version = campaign_version(directory)?;
+    // A file may change between two reads. Were it to change all the time, the version would be
+    // outdated, never wrong.
+    let mut version = campaign_version(directory)?;
+    for _ in 0..3 {
+        let view = view_version(directory, version)?;
+        version = campaign_version(directory)?;
+        if version == view.version {
+            return Ok(view);
+        }
+    }
+    view_version(directory, version)
+}
+
+fn view_version(directory: &Path, version: String) -> Result<CampaignView, Error> {
     let (campaign, impacts) = read_any(directory)?;
     let text = campaign_text(directory)?;
     let tables: toml::Table = toml::from_str(&text).unwrap_or_default();

@@ -1,7 +1,7 @@
 //! What the page shows of a campaign that fits no impacts: the tables of its report and the
 //! figures that `fit` draws, of the whole or of one recording.
 
-use crate::workspace::{stored_results, with_reasons};
+use crate::workspace::{Detail, stored_results, with_reasons};
 use serde::Serialize;
 use std::path::Path;
 use windfall_campaign::settings::kind::{STORE_FILE, campaign_kind};
@@ -69,7 +69,7 @@ pub fn measured_view(directory: &Path, item: Option<&str>) -> Result<MeasuredVie
             (Some(item.outcome), item.figure.into_iter().collect())
         }
         None => {
-            let outcome = match stored_results(directory)?.outcome {
+            let outcome = match stored_results(directory, Detail::Whole)?.outcome {
                 Some(AnyOutcome::Measured(outcome)) => Some(*outcome),
                 _ => None,
             };

@@ -5,9 +5,11 @@ use crate::campaign_files::CAMPAIGN_FILES;
 use crate::campaign_files::file_plan_of;
 use crate::campaign_view::{check_confined, name_of, names_in, view_campaign};
 use itertools::Itertools;
-use serde::Serialize;
+use memchr::memmem;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use windfall_campaign::pipeline::request::{FitRequest, PENDING, Reuse};
+use windfall_campaign::result::outcome::ImpactOutcome;
 use windfall_campaign::settings::kind::CAMPAIGN_FILE;
 use windfall_campaign::settings::kind::{STORE_FILE, UNDO_FILE};
 use windfall_campaign::settings::model::FilePlan;
@@ -56,6 +58,17 @@ pub struct RunView {
     pub results: usize,
     /// What it could not fit.
     pub failures: usize,
+}
+
+/// How much of the results is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, utoipa::ToSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Detail {
+    /// All of each impact.
+    #[default]
+    Whole,
+    /// Of each impact what tables show; what only its own view shows is empty.
+    Brief,
 }
 
 /// What the store holds of a campaign as it is now.
@@ -145,6 +158,11 @@ impl Workspace {
     pub fn without_path(&self, text: &str) -> String {
         let root = self.root.display().to_string();
         let above = self.root.parent().map(|p| p.display().to_string());
+        // Results of many impacts are long, and hardly ever name a path.
+        let begins = above.as_ref().unwrap_or(&root);
+        if memmem::find(text.as_bytes(), begins.as_bytes()).is_none() {
+            return text.to_owned();
+        }
         let text = match self.single {
             true => text.replace(&root, &self.name()),
             false => text
@@ -218,7 +236,7 @@ fn entry_of(directory: &Path) -> CampaignEntry {
 ///
 /// # Errors
 /// The campaign is wrong, or its store cannot be read.
-pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
+pub fn stored_results(directory: &Path, detail: Detail) -> Result<StoredResults, Error> {
     let store = directory.join(STORE_FILE);
     let run = latest_run(&store)?;
     // A command that still fits writes its results before its run.
@@ -242,6 +260,9 @@ pub fn stored_results(directory: &Path) -> Result<StoredResults, Error> {
     };
     let (time, failures) = run.map(|run| (run.time, run.failures)).unzip();
     let pending = with_reasons(failed, failures.into_iter().flatten());
+    if let (AnyOutcome::Impacts(outcome), Detail::Brief) = (&mut outcome, detail) {
+        outcome.impacts.iter_mut().for_each(ImpactOutcome::abridge);
+    }
     Ok(StoredResults {
         // Where everything failed, its reasons are a result.
         findings: outcome.finding_kinds(),

@@ -107,6 +107,26 @@ pub struct ImpactOutcome {
 }
 
 impl ImpactOutcome {
+    /// Drops what only the impact's own view shows, so that many impacts are sent fast:
+    /// nuisances except the onset, correlations, residuals, regression, directions, common
+    /// errors, the fitted motion, where derived quantities come from and how sure they are,
+    /// draws and profiles.
+    pub fn abridge(&mut self) {
+        self.nuisances
+            .0
+            .retain(|(name, _)| name.as_str() == "onset");
+        self.correlations = Named::default();
+        self.residuals = Named::default();
+        self.regression = Named::default();
+        self.derived_sd = Named::default();
+        self.derived_from = Named::default();
+        self.fitted = Named::default();
+        self.directions = Vec::new();
+        self.common = Named::default();
+        self.intervals.drawn = Named::default();
+        self.intervals.profiles = Named::default();
+    }
+
     /// A derived quantity, where it is known.
     pub fn derived(&self, name: &str) -> Option<f64> {
         self.derived.get(name).copied().flatten()

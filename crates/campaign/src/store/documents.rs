@@ -76,6 +76,8 @@ pub fn find_documents<T: DeserializeOwned>(
         return nothing();
     };
     let failed = |source| store_error(path, "read", source);
+    // In one transaction, or the file is locked anew for each.
+    connection.execute_batch("BEGIN").map_err(failed)?;
     // Older stores have no digests to compare with.
     if version_of(&connection).map_err(failed)? < 3 {
         return nothing();

@@ -175,6 +175,40 @@ test("a save is undone and done again; what came since stands in its way", async
   await page.getByRole("button", { name: "Close", exact: true }).click();
 });
 
+test("what was read earlier and answered later replaces nothing", async () => {
+  await visit(page, "#/c/apples/impact/specimen-03");
+  await title("Impact specimen-03");
+  await page.getByText("slipped twice").first().waitFor();
+  const file = join(apples, "impacts.csv");
+  const began = await readFile(file, "utf8");
+  let held;
+  let release;
+  const waits = new Promise((resolve) => (release = resolve));
+  const asked = new Promise((resolve) => (held = resolve));
+  const address = "**/api/campaigns/apples/results?*";
+  await page.route(
+    address,
+    async (route) => {
+      const response = await route.fetch();
+      held();
+      await waits;
+      await route.fulfill({ response });
+    },
+    { times: 1 },
+  );
+  await edit(file, began.replace("slipped twice", "slipped thrice"));
+  await asked;
+  await edit(file, began.replace("slipped twice", "slipped again"));
+  await page.getByText("slipped again").first().waitFor();
+  const late = page.waitForEvent("requestfinished", (request) => request.url().includes("/apples/results?"));
+  release();
+  await late;
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  assert.equal(await page.getByText("slipped thrice").count(), 0);
+  await edit(file, began);
+  await page.getByText("slipped twice").first().waitFor();
+});
+
 test("notes on an impact and on the campaign are in its files, and commands show them", async () => {
   await visit(page, "#/c/apples/impact/specimen-01");
   await title("Impact specimen-01");

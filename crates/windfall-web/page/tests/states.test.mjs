@@ -231,7 +231,7 @@ test("an answer that fails leaves no \"Reading …\"", async () => {
     ["**/recording?*", "#/c/drop-command/import/drop-100-2.csv"],
     ["**/outline?*", "#/c/drop-command/recordings/drop-100-1.csv"],
     ["**/refit", "#/c/impacts-command/impact"],
-    ["**/results", "#/c/acoustic-command/table"],
+    ["**/results?*", "#/c/acoustic-command/table"],
     ["**/api/campaigns", "#/"],
   ]) {
     // Another campaign, so that everything is asked anew.

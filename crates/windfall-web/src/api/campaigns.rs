@@ -14,7 +14,7 @@ use windfall_campaign::settings::template::{TEMPLATES, write_template};
 use windfall_workspace::campaign_view::{CampaignView, view_campaign};
 use windfall_workspace::measured_view::{MeasuredView, measured_view};
 use windfall_workspace::rig_form::{MomentumView, RigForm, momentum_view, rig_forms};
-use windfall_workspace::workspace::{CampaignEntry, StoredResults, stored_results};
+use windfall_workspace::workspace::{CampaignEntry, Detail, StoredResults, stored_results};
 
 /// A campaign to create.
 #[derive(Debug, Deserialize, ToSchema)]
@@ -95,15 +95,27 @@ pub(crate) async fn momentum(
         .await
 }
 
+/// How much of the results.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(crate) struct ResultsAsked {
+    /// How much of each impact; all of it if left out.
+    #[param(example = "brief")]
+    impacts: Option<Detail>,
+}
+
 /// Stored results for the current files and options; nothing is fitted.
 #[utoipa::path(
-    get, path = "/api/campaigns/{id}/results", params(("id" = String, Path, example = "bench")),
+    get, path = "/api/campaigns/{id}/results",
+    params(("id" = String, Path, example = "bench"), ResultsAsked),
     responses((status = 200, body = StoredResults), QuestionProblems))]
 pub(crate) async fn results(
     State(app): State<App>,
     Path(id): Path<String>,
+    Asked(asked): Asked<ResultsAsked>,
 ) -> Answer<StoredResults> {
-    app.answer(id, |_, directory| stored_results(directory))
+    let detail = asked.impacts.unwrap_or_default();
+    app.answer(id, move |_, directory| stored_results(directory, detail))
         .await
 }
 

@@ -102,7 +102,7 @@ export const api = {
   campaigns: () => call("GET /api/campaigns"),
   create: (body: NewCampaign) => call("POST /api/campaigns", [], { body }),
   campaign: (id: string) => call("GET /api/campaigns/{id}", [id]),
-  results: (id: string) => call("GET /api/campaigns/{id}/results", [id]),
+  results: (id: string) => call("GET /api/campaigns/{id}/results", [id], { query: { impacts: "brief" } }),
   rigs: () => call("GET /api/rigs"),
   /** What impulse and momentum say of the mass. */
   momentum: (id: string) => call("GET /api/campaigns/{id}/momentum", [id]),

@@ -101,6 +101,7 @@ export interface DesignWayOutcome {
   surfaces: DesignSurfaceOutcome[]; optimum: DesignOptimum; family: DesignMember[]; heights: DesignHeight[];
   depth: DepthOutcome | null;
 }
+export type Detail = "whole" | "brief";
 export interface DifferenceOutcome {
   within: string[]; contrast: string; difference: number; se: number | null; df: number | null; t: number | null;
   p: number | null; low: number | null; high: number | null; ratio: OnScale | null;
@@ -569,7 +570,7 @@ export interface Calls {
   "POST /api/campaigns/{id}/refit": Call<LiveOutcome, Refit>;
   "POST /api/campaigns/{id}/regress": Call<RegressAnswer, RegressGiven>;
   "GET /api/campaigns/{id}/report/{file}": Call<string>;
-  "GET /api/campaigns/{id}/results": Call<StoredResults>;
+  "GET /api/campaigns/{id}/results": Call<StoredResults, undefined, { impacts?: Detail }>;
   "PUT /api/campaigns/{id}/rig": Call<CampaignView, RigGiven>;
   "POST /api/campaigns/{id}/surface": Call<SurfaceAnswer, SurfaceGiven>;
   "GET /api/campaigns/{id}/table": Call<DataTable, undefined, { file: string }>;

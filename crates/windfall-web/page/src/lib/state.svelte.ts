@@ -131,6 +131,9 @@ export class OpenCampaign {
   lost = $state(false);
   /** What is told of its files as long as they cannot be read. */
   #told: number | null = null;
+  /** Counts loads and changes as they begin; the newest that was taken. */
+  #begun = 0;
+  #taken = 0;
   readonly #end: () => void;
 
   constructor(readonly id: string) {
@@ -147,14 +150,19 @@ export class OpenCampaign {
   }
 
   async load(): Promise<void> {
+    const own = ++this.#begun;
     try {
       const [view, results] = await Promise.all([api.campaign(this.id), api.results(this.id)]);
+      // Loads overlap: one that began earlier and ends later knows less.
+      if (own < this.#taken) return;
+      this.#taken = own;
       this.view = view;
       this.results = results;
       this.problem = null;
       this.changes += 1;
       this.#settle();
     } catch (error) {
+      if (own < this.#taken) return;
       // Keep what is shown: a file may be half written at this moment.
       if (this.view === null) this.problem = wordsOf(error);
       else {
@@ -171,6 +179,7 @@ export class OpenCampaign {
 
   /** Takes the answer to a change made through the page. */
   changed(view: CampaignView): void {
+    this.#taken = ++this.#begun;
     this.view = view;
     void this.load();
   }

@@ -73,7 +73,8 @@ export async function filmOf(
   show: (time: number) => Promise<void>,
   going: () => boolean,
 ): Promise<Blob> {
-  const kinds = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+  // VP8 takes a fraction of the work of VP9, which would leave fewer pictures.
+  const kinds = ["video/webm;codecs=vp8", "video/webm;codecs=vp9", "video/webm"];
   const type = typeof MediaRecorder === "undefined" ? undefined : kinds.find((kind) => MediaRecorder.isTypeSupported(kind));
   if (!type) throw new Error("this browser makes no films (WebM); `windfall scene vtk` writes frames for ParaView");
   const { canvas, scale } = sheet(look.player, FILM);
@@ -94,12 +95,16 @@ export async function filmOf(
   recorder.start(1000);
   try {
     const began = performance.now();
+    // Slow computers film fewer pictures; the time stays right: each is of the time at which it
+    // will be drawn, if it takes as long as the one before; ms.
+    let takes = 0;
     for (let time = from; time < to && going(); ) {
-      // Slow computers film fewer pictures; the time stays right.
       await new Promise(requestAnimationFrame);
-      time = Math.min(from + ((performance.now() - began) / 1000) * speed, to);
+      const asked = performance.now();
+      time = Math.min(from + ((asked - began + takes) / 1000) * speed, to);
       await show(time);
       draw(time);
+      takes = performance.now() - asked;
     }
     // What the last picture came too late by is taken off the time for which it stands.
     const late = performance.now() - began - (1000 * (to - from)) / speed;
