@@ -59,6 +59,19 @@ fn reasons(outcome: &Value, impact: usize) -> Vec<String> {
 }
 
 #[test]
+fn where_laws_differ_in_what_counts_each_is_named() {
+    let folder = campaign();
+    let line = "fit campaign --law kuwabara-kono --law lankarani-nikravesh";
+    let (status, text, told) = windfall(line, folder.path());
+    assert_eq!(status, Some(0), "{told}");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains("kuwabara-kono: all 12 impacts count. lankarani-nikravesh: 0 of 12 impacts count; left out: 12 at-bound"),
+        "{text}"
+    );
+}
+
+#[test]
 fn rejects_an_excluded_impact_everywhere() {
     let laboratory = campaign();
     let folder = laboratory.path();

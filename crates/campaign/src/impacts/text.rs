@@ -26,7 +26,7 @@ pub fn text_of_campaign(outcome: &CampaignOutcome) -> String {
         outcome.simulated.as_deref(),
         outcome.note.as_deref(),
     );
-    let _ = writeln!(text, "{}", counted_line(outcome));
+    let _ = writeln!(text, "{}", paragraph(&counted_line(outcome), 2));
     let _ = writeln!(text, "{}", mass_line(outcome));
     for line in bench_lines(outcome) {
         let _ = writeln!(text, "{}", paragraph(&line, 2));
@@ -86,20 +86,36 @@ fn law_text(outcome: &CampaignOutcome, law: &str) -> String {
     text
 }
 
-/// How many impacts count, of how many, and what becomes of the others.
+/// How many impacts count, of how many, and what becomes of the others; of each law where the
+/// laws differ.
 pub fn counted_line(outcome: &CampaignOutcome) -> String {
-    let failed_law = || outcome.failed.iter().find_map(|own| own.law.as_deref());
-    let first = outcome.impacts.first().map(|impact| impact.law.as_str());
-    let first = first.or_else(failed_law);
-    let fitted = outcome
-        .impacts
-        .iter()
-        .filter(|i| Some(i.law.as_str()) == first);
-    let fitted: Vec<&ImpactOutcome> = fitted.collect();
-    let failed = outcome.failed.iter().filter(|own| match &own.law {
-        Some(law) => Some(law.as_str()) == first,
-        None => true,
-    });
+    let fitted = outcome.impacts.iter().map(|own| own.law.as_str());
+    let failed = outcome.failed.iter().filter_map(|own| own.law.as_deref());
+    let laws: Vec<&str> = fitted.chain(failed).unique().collect();
+    let lines: Vec<String> = match laws.as_slice() {
+        [] => vec![counted_under(outcome, None)],
+        laws => laws
+            .iter()
+            .map(|law| counted_under(outcome, Some(law)))
+            .collect(),
+    };
+    match lines.iter().all_equal() {
+        true => lines[0].clone(),
+        false => {
+            let told = laws.iter().zip(&lines);
+            told.map(|(law, line)| format!("{law}: {}", line.replacen("All", "all", 1)))
+                .join(". ")
+        }
+    }
+}
+
+/// How many impacts count under a law.
+pub fn counted_under(outcome: &CampaignOutcome, law: Option<&str>) -> String {
+    let of_law = |own: &&ImpactOutcome| Some(own.law.as_str()) == law;
+    let fitted: Vec<&ImpactOutcome> = outcome.impacts.iter().filter(of_law).collect();
+    // What failed before a law was fitted failed under all of them.
+    let failed = outcome.failed.iter();
+    let failed = failed.filter(|own| own.law.is_none() || own.law.as_deref() == law);
     let failed = failed.count();
     let counted = fitted.iter().filter(|impact| impact.counts()).count();
     let all = fitted.len() + failed;

@@ -5,7 +5,7 @@ use crate::gather::new::Gathered;
 use crate::gather::watch::Watched;
 use std::fmt::Write;
 use std::path::Path;
-use windfall_campaign::impacts::text::{counted_line, derived_cell, own_codes};
+use windfall_campaign::impacts::text::{counted_under, derived_cell, own_codes};
 use windfall_campaign::result::quantity::quantity_named;
 use windfall_distribution::tail::t_upper_quantile;
 use windfall_files::error::Error;
@@ -107,11 +107,10 @@ pub fn text_of_watched(watched: &Watched) -> String {
     for name in watched.left_out {
         let _ = writeln!(text, "NOT LISTED: {name}");
     }
-    let _ = write!(text, "  {}", counted_line(outcome));
-    let parameters = outcome
-        .impacts
-        .first()
-        .map_or(&[][..], |first| &first.parameters.0);
+    let first = outcome.impacts.first();
+    let counted = counted_under(outcome, first.map(|own| own.law.as_str()));
+    let _ = write!(text, "  {counted}");
+    let parameters = first.map_or(&[][..], |own| &own.parameters.0);
     for (name, _) in parameters {
         let Some(spread) = outcome.summary.get(name) else {
             continue;
