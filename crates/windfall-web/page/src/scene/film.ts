@@ -8,10 +8,11 @@ import type { Shade } from "./shades";
 const WIDE = 2400;
 /** Width of a film; px. */
 const FILM = 1280;
-/** How long the last picture stands: a recorder that is stopped at once loses what it still
- *  encodes; ms. */
+/** How long the last picture stands; ms. */
 const STANDS = 400;
 const LEAST = 100;
+/** How long a recorder rests before it is stopped, as it then loses what it still encodes; ms. */
+const RESTS = 1000;
 
 /** What is seen. */
 export interface Look {
@@ -108,7 +109,10 @@ export async function filmOf(
     }
     // What the last picture came too late by is taken off the time for which it stands.
     const late = performance.now() - began - (1000 * (to - from)) / speed;
-    await new Promise((done) => setTimeout(done, Math.max(STANDS - Math.max(late, 0), LEAST)));
+    const stands = going() ? STANDS - late : STANDS;
+    await new Promise((done) => setTimeout(done, Math.max(stands, LEAST)));
+    recorder.pause();
+    await new Promise((done) => setTimeout(done, RESTS));
   } finally {
     recorder.stop();
     look.player.enlarge(null);
