@@ -45,6 +45,9 @@ LINE = re.compile(r"([0-9a-f]{64}|any)  .+")
 TIMES = re.compile(rb"\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d)?Z?)?")
 # What results.json tells of how it came about: how much was in the store.
 PASS = re.compile(rb'"(fitted|stored|up_to_date)": \w+')
+# Kind of the documents that a new one replaces: it says of which results the table of results is,
+# and is written last; with the one of before, the table is made anew.
+REPLACED = "origin"
 # Calls at which --calls kills.
 CALLS = ["openat", "write", "pwrite64", "ftruncate", "fsync", "fdatasync", "rename", "renameat2",
          "link", "linkat", "unlink", "unlinkat", "mkdir", "rmdir", "fchmod"]
@@ -74,18 +77,24 @@ def rows_of_store(path):
             rows = store.execute(f"SELECT * FROM {table}")
             names = [own[0] for own in rows.description]
             kept = [i for i, name in enumerate(names) if name not in ("id", "run", "time")]
+            kind = (lambda row: row[names.index("kind")]) if "kind" in names else lambda row: None
             # The newest comparison takes the place of the one of before, and tells its time.
-            rows = [row for row in rows if "kind" not in names or row[names.index("kind")] != "kept"]
-            found[table] = frozenset(tuple(row[i] for i in kept) for row in rows)
+            rows = [row for row in rows if kind(row) != "kept"]
+            of = lambda wanted: frozenset(tuple(row[i] for i in kept) for row in rows if (kind(row) == REPLACED) == wanted)
+            found[table], found[table, REPLACED] = of(False), of(True)
         store.close()
-    return tuple(sorted(found.items())) or None
+    return tuple(sorted(found.items(), key=str)) or None
 
 
 def between(left, before, after=None):
-    """Whether a store has all rows of before, and no others than the new ones: some work adds them in two runs."""
+    """Whether a store has all rows of before, and no others than the new ones: some work adds them in two runs.
+    Of rows that are replaced it has those of before or the new ones."""
     before, left, after = dict(before or ()), dict(left or ()), dict(after or ())
     rows = lambda store, table: store.get(table, frozenset())
-    return all(rows(before, table) <= rows(left, table) <= rows(after, table) for table in {**before, **left})
+    def fits(table):
+        old, own, new = rows(before, table), rows(left, table), rows(after, table)
+        return own in (old, new) if isinstance(table, tuple) else old <= own <= new
+    return all(fits(table) for table in {**before, **left})
 
 
 def snapshot(folder, kind):

@@ -1,5 +1,6 @@
 """Kinds of work that check_kills.py kills: their inputs, their commands, how they are taken up again."""
 
+import contextlib
 import http.client
 import json
 import math
@@ -335,8 +336,9 @@ class PageSaves:
         if seconds is not None:
             timer.cancel()
         if not killed:
-            # With the tracer, which would wait for it.
-            os.killpg(own.process.pid, signal.SIGTERM)
+            # With the tracer, which would wait for it; the timer may have been as fast.
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(own.process.pid, signal.SIGTERM)
         own.end()
         return killed, done
 

@@ -10,6 +10,17 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+/// What of an impact's result only the view of that impact shows.
+const ONE_IMPACT: [&str; 8] = [
+    "correlations",
+    "residuals",
+    "regression",
+    "derived_sd",
+    "derived_from",
+    "fitted",
+    "directions",
+    "common",
+];
 const LAW: &str = "kuwabara-kono(k=394931, c=681)";
 
 fn windfall(arguments: &[&str]) -> assert_cmd::assert::Assert {
@@ -509,6 +520,33 @@ fn repeats_fits_of_the_command_for_fifty_clients_at_once() {
     });
 }
 
+/// What is shorter is what only the view of one impact shows; all else is as in the whole results.
+fn brief_results_are_the_whole_ones_abridged(running: &Running) {
+    let whole = running.get("/api/campaigns/bench/results");
+    let brief = running.get("/api/campaigns/bench/results?impacts=brief");
+    assert!(brief.text().len() < whole.text().len() / 2);
+    let (mut whole, mut brief) = (whole.json(), brief.json());
+    for outcome in [&mut whole, &mut brief].map(|results| &mut results["outcome"]["impacts"]) {
+        for impact in outcome.as_array_mut().unwrap() {
+            let impact = impact.as_object_mut().unwrap();
+            for name in ONE_IMPACT {
+                impact.remove(name);
+            }
+            impact["nuisances"]
+                .as_object_mut()
+                .unwrap()
+                .retain(|name, _| name == "onset");
+            for name in ["drawn", "profiles"] {
+                impact["intervals"].as_object_mut().unwrap().remove(name);
+            }
+        }
+    }
+    assert_eq!(whole, brief);
+    let wrong = running.get("/api/campaigns/bench/results?impacts=banana");
+    assert_eq!(wrong.status, 400);
+    assert!(wrong.text().contains("banana"), "{}", wrong.text());
+}
+
 #[test]
 fn work_in_the_page_is_in_the_files_that_the_command_reads() {
     let (folder, campaign) = bench("3");
@@ -530,6 +568,7 @@ fn work_in_the_page_is_in_the_files_that_the_command_reads() {
     );
     let table = std::fs::read_to_string(campaign.join("tables/results.csv")).unwrap();
     assert_eq!(table.lines().count(), 7);
+    brief_results_are_the_whole_ones_abridged(&running);
 
     // A window moved in the page: the command fits that impact anew, with the same result.
     let id = &ids(&running)[0];

@@ -149,8 +149,8 @@ pub fn check_work(directory: &Path) -> Result<(), Error> {
 /// # Errors
 /// A file of the campaign is missing or does not say what it must.
 pub fn view_campaign(directory: &Path) -> Result<CampaignView, Error> {
-    // A file may change between two reads. Were it to change all the time, the version would be
-    // outdated, never wrong.
+    // A file may change between two reads. If it keeps changing, the version is outdated, never
+    // wrong.
     let mut version = campaign_version(directory)?;
     for _ in 0..3 {
         let view = view_version(directory, version)?;

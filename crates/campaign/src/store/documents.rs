@@ -8,6 +8,10 @@ use std::path::Path;
 use windfall_files::error::Error;
 use windfall_files::provenance::digest_text;
 
+/// Results that are read in one transaction: locking the file for each takes longer than reading
+/// it, and a writer must not wait for all of them.
+const AT_ONCE: usize = 1000;
+
 /// One number of a document, for people with a database browser.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredValue {
@@ -76,8 +80,6 @@ pub fn find_documents<T: DeserializeOwned>(
         return nothing();
     };
     let failed = |source| store_error(path, "read", source);
-    // In one transaction, or the file is locked anew for each.
-    connection.execute_batch("BEGIN").map_err(failed)?;
     // Older stores have no digests to compare with.
     if version_of(&connection).map_err(failed)? < 3 {
         return nothing();
@@ -101,7 +103,14 @@ pub fn find_documents<T: DeserializeOwned>(
             StoreError::damaged(path, detail)
         })
     };
-    keys.iter().map(&mut find).collect()
+    let mut all = Vec::with_capacity(keys.len());
+    for some in keys.chunks(AT_ONCE) {
+        let _locked = connection.unchecked_transaction().map_err(failed)?;
+        for key in some {
+            all.push(find(key)?);
+        }
+    }
+    Ok(all)
 }
 
 /// Adds a document; one that is there and is not what was written is mended.

@@ -3,16 +3,18 @@
 import { drawLegend, drawOver, LEGEND, type Ink } from "./overlay";
 import type { Player } from "./player";
 import type { Shade } from "./shades";
+import { webm } from "./webm";
 
 /** Width of a picture: 174 mm at 350 dots per inch; px. */
 const WIDE = 2400;
 /** Width of a film; px. */
 const FILM = 1280;
+/** Pictures of a film in a second. */
+const RATE = 30;
 /** How long the last picture stands; ms. */
 const STANDS = 400;
-const LEAST = 100;
-/** How long a recorder rests before it is stopped, as it then loses what it still encodes; ms. */
-const RESTS = 1000;
+/** Every how many pictures one is whole, and one can jump to it. */
+const WHOLE = 30;
 
 /** What is seen. */
 export interface Look {
@@ -61,7 +63,7 @@ export async function pictureOf(look: Look, time: number): Promise<Blob> {
   return blob;
 }
 
-/** A film from one time to another, as WebM; it takes as long to make as to see.
+/** A film from one time to another, as WebM.
  *
  *  * `speed`: seconds of the scene in one of the film
  *  * `show`: brings the player to a time
@@ -74,50 +76,53 @@ export async function filmOf(
   show: (time: number) => Promise<void>,
   going: () => boolean,
 ): Promise<Blob> {
-  // VP8 takes a fraction of the work of VP9, which would leave fewer pictures.
-  const kinds = ["video/webm;codecs=vp8", "video/webm;codecs=vp9", "video/webm"];
-  const type = typeof MediaRecorder === "undefined" ? undefined : kinds.find((kind) => MediaRecorder.isTypeSupported(kind));
-  if (!type) throw new Error("this browser makes no films (WebM); `windfall scene vtk` writes frames for ParaView");
   const { canvas, scale } = sheet(look.player, FILM);
-  const draw = (time: number) => {
-    look.player.render();
-    fill(canvas, scale, look, time);
-  };
-  look.player.enlarge(scale);
-  await show(from);
-  draw(from);
-  const stream = canvas.captureStream();
-  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 8e6 });
-  const pieces: Blob[] = [];
-  recorder.ondataavailable = (event) => pieces.push(event.data);
-  const whole = new Promise<Blob>((done) => {
-    recorder.onstop = () => done(new Blob(pieces, { type: "video/webm" }));
+  const { width, height } = canvas;
+  // VP8 takes a fraction of the work of VP9, and every browser plays it.
+  const settings = { codec: "vp8", width, height, bitrate: 8e6, framerate: RATE };
+  const known = typeof VideoEncoder !== "undefined" && (await VideoEncoder.isConfigSupported(settings)).supported;
+  if (!known) throw new Error("this browser makes no films (WebM); `windfall scene vtk` writes frames for ParaView");
+
+  const pictures: Parameters<typeof webm>[0] = [];
+  let failed: DOMException | null = null;
+  const encoder = new VideoEncoder({
+    output: (chunk) => {
+      const data = new Uint8Array(chunk.byteLength);
+      chunk.copyTo(data);
+      pictures.push({ time: Math.round(chunk.timestamp / 1000), whole: chunk.type === "key", data });
+    },
+    error: (error) => (failed = error),
   });
-  recorder.start(1000);
+  encoder.configure(settings);
+  // Microseconds.
+  const encode = (timestamp: number, whole: boolean) => {
+    const frame = new VideoFrame(canvas, { timestamp });
+    encoder.encode(frame, { keyFrame: whole });
+    frame.close();
+  };
+  const seconds = (to - from) / speed;
+  let last = 0;
+  look.player.enlarge(scale);
   try {
-    const began = performance.now();
-    // Slow computers film fewer pictures; the time stays right: each is of the time at which it
-    // will be drawn, if it takes as long as the one before; ms.
-    let takes = 0;
-    for (let time = from; time < to && going(); ) {
-      await new Promise(requestAnimationFrame);
-      const asked = performance.now();
-      time = Math.min(from + ((asked - began + takes) / 1000) * speed, to);
+    for (let k = 0; ; k++) {
+      const passed = Math.min(k / RATE, seconds);
+      const time = passed === seconds ? to : from + passed * speed;
       await show(time);
-      draw(time);
-      takes = performance.now() - asked;
+      look.player.render();
+      fill(canvas, scale, look, time);
+      last = 1e6 * passed;
+      encode(last, k % WHOLE === 0);
+      // The page stays alive, and the encoder is not given more than it can do.
+      do await new Promise((done) => setTimeout(done));
+      while (encoder.encodeQueueSize > 2);
+      if (failed || passed === seconds || !going()) break;
     }
-    // What the last picture came too late by is taken off the time for which it stands.
-    const late = performance.now() - began - (1000 * (to - from)) / speed;
-    const stands = going() ? STANDS - late : STANDS;
-    await new Promise((done) => setTimeout(done, Math.max(stands, LEAST)));
-    recorder.pause();
-    await new Promise((done) => setTimeout(done, RESTS));
+    if (failed) throw failed;
+    encode(last + 1000 * STANDS, false);
+    await encoder.flush();
   } finally {
-    recorder.stop();
     look.player.enlarge(null);
+    if (encoder.state !== "closed") encoder.close();
   }
-  const blob = await whole;
-  for (const track of stream.getTracks()) track.stop();
-  return blob;
+  return webm(pictures, [width, height], last / 1000 + STANDS);
 }
