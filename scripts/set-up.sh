@@ -28,7 +28,7 @@ apt_install() {
     say "set-up: installing $*"
     as_root apt-get update -qq || say "set-up: apt-get update failed; trying with the lists that are there"
     as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -qq --no-install-recommends "$@" >/dev/null ||
+        apt-get -o DPkg::Lock::Timeout=300 install -y -qq --no-install-recommends "$@" >/dev/null ||
         fail "apt-get could not install: $*"
 }
 

@@ -287,7 +287,7 @@ test("what is seen is saved as a picture that is wide enough for print", async (
 test("a film plays from the time shown to the end", async () => {
   await slider().focus();
   await page.keyboard.press("End");
-  for (let k = 0; k < 20; k++) await page.keyboard.press("ArrowLeft");
+  for (let k = 0; k < 10; k++) await page.keyboard.press("ArrowLeft");
   await page.getByLabel("Speed").selectOption("0.5");
   const from = await now();
   const { name, bytes } = await saved("Save film (WebM)");
