@@ -1,4 +1,4 @@
-/** Pictures that a browser has encoded as VP8, as a WebM file (RFC 9559; VP8 in Matroska: RFC 6386). */
+/** Pictures that a browser has encoded as VP8 (RFC 6386), as a WebM file (RFC 9559). */
 
 /** A picture, and when it is shown from the beginning on; ms. */
 interface Encoded {
