@@ -4,20 +4,13 @@
 
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { end, launch, open, quantile, scratch, serve, windfall } from "../crates/windfall-web/page/tests/helpers.mjs";
+import { carriage, end, launch, open, quantile, scratch, serve, windfall } from "../crates/windfall-web/page/tests/helpers.mjs";
 
 const ROUNDS = 20;
 const place = await scratch();
-const simulate = (name, specimens) =>
-  windfall(
-    ...["simulate", "carriage", "--law", "kuwabara-kono(k=753599, c=1524)", "--mass", "0.3 kg"],
-    ...["--velocity", "1 m/s", "--specimens", `${specimens}`, "--spread", "k=133165"],
-    ...["--recordings", join(place.directory, name)],
-  );
-await simulate("many", 500);
-await windfall("fit", join(place.directory, "many"));
-await simulate("three", 1);
-const settings = join(place.directory, "three", "campaign.toml");
+await windfall("fit", await carriage(place.directory, "many", 500));
+const three = await carriage(place.directory, "three", 1);
+const settings = join(three, "campaign.toml");
 const text = await readFile(settings, "utf8");
 await writeFile(settings, text.replace(/^laws = .*$/m, 'laws = ["hertz", "kuwabara-kono", "tsuji"]'));
 

@@ -3,14 +3,10 @@
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { launch, scratch, windfall } from "../crates/windfall-web/page/tests/helpers.mjs";
+import { carriage, launch, scratch, windfall } from "../crates/windfall-web/page/tests/helpers.mjs";
 
 const place = await scratch();
-const many = join(place.directory, "many");
-await windfall(
-  ...["simulate", "carriage", "--law", "kuwabara-kono(k=753599, c=1524)", "--mass", "0.3 kg"],
-  ...["--velocity", "1 m/s", "--specimens", "500", "--spread", "k=133165", "--recordings", many],
-);
+const many = await carriage(place.directory, "many", 500);
 await windfall("fit", many);
 const start = performance.now();
 await windfall("report", many);

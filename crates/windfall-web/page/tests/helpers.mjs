@@ -48,6 +48,17 @@ export async function scratch() {
   return { directory, remove: () => rm(directory, { recursive: true, force: true }) };
 }
 
+/** A campaign of simulated impacts of a carriage, one of each fruit; its directory. */
+export async function carriage(parent, name, specimens) {
+  const directory = join(parent, name);
+  await windfall(
+    ...["simulate", "carriage", "--law", "kuwabara-kono(k=753599, c=1524)", "--mass", "0.3 kg"],
+    ...["--velocity", "1 m/s", "--specimens", `${specimens}`, "--spread", "k=133165"],
+    ...["--recordings", directory],
+  );
+  return directory;
+}
+
 /** A campaign of simulated pendulum impacts; its directory. */
 export async function pendulum(parent, name = "apples", specimens = 6) {
   const directory = join(parent, name);
