@@ -1,7 +1,7 @@
 /** Numbers on the page: units of models, and tables that go into a spreadsheet. */
 
 import assert from "node:assert/strict";
-import { mkdir, writeFile } from "node:fs/promises";
+import { copyFile, mkdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { launch, open, pendulum, pictures, scratch, serve, visit, windfall } from "./helpers.mjs";
@@ -54,6 +54,32 @@ test("a regression names the units of its coefficients, and its table is copied 
     // All digits: more than the page shows.
     assert.ok(row[1].length > 8, row[1]);
   }
+  assert.deepEqual(troubles, []);
+});
+
+test("a table of the results that is made meanwhile moves nothing under the pointer", async () => {
+  const campaign = await pendulum(folder.directory, "pears", 2);
+  await windfall("fit", campaign);
+  await mkdir(join(campaign, "tables"));
+  await copyFile(join(folder.directory, "apples/tables/forces.csv"), join(campaign, "tables/forces.csv"));
+  let release;
+  const held = new Promise((done) => (release = done));
+  await page.route("**/api/jobs/*/events", async (route) => {
+    await held;
+    await route.continue();
+  });
+  const asked = page.waitForRequest("**/api/jobs/*/events");
+  await visit(page, "#/c/pears/regress");
+  await page.getByLabel("Table for the regression").selectOption("tables/forces.csv");
+  const chip = page.getByRole("group", { name: "Columns" }).getByRole("button", { name: "speed_m_s", exact: true });
+  await chip.waitFor();
+  await asked;
+  const before = await chip.boundingBox();
+  release();
+  await page.getByLabel("Table for the regression").locator("option", { hasText: "tables/results.csv" }).waitFor({ state: "attached" });
+  await page.getByText("Making the table of the results …").waitFor({ state: "detached" });
+  assert.deepEqual(await chip.boundingBox(), before);
+  await page.unroute("**/api/jobs/*/events");
   assert.deepEqual(troubles, []);
 });
 
