@@ -30,6 +30,7 @@ const { listOf, listText, rangeOf, rangeText } = await load("./src/lib/held.ts")
 const { rangesOf, rangesText } = await load("./src/lib/table.ts");
 const { responseOf, responseText } = await load("./src/lib/surface.ts");
 const { changesOf, draftOf, heldParameters } = await load("./src/lib/options.ts");
+const { webm } = await load("./src/scene/webm.ts");
 
 /** With plain spaces and minus, so that the expectations can be read. */
 const plain = (text) => text.replace(/[\u202f\u00a0]/g, " ").replaceAll("\u2212", "-");
@@ -253,4 +254,11 @@ test("differences of long texts are found between their common ends", () => {
     [{ sign: "-", text: "row 100000" }, { sign: "+", text: "another" }],
   );
   assert.deepEqual(difference("a\na", "a"), [{ sign: " ", text: "a" }, { sign: "-", text: "a" }]);
+});
+
+test("a film of half an hour is written", () => {
+  const pictures = Array.from({ length: 54_000 }, (_, k) => {
+    return { time: Math.round((k * 1000) / 30), whole: k % 30 === 0, data: new Uint8Array(10) };
+  });
+  assert.ok(webm(pictures, [1280, 1000], 1.8e6).size > 54_000 * 10);
 });

@@ -18,7 +18,7 @@ function bytes(value: number, count: number): Uint8Array<ArrayBuffer> {
 }
 
 /** An element: what it is, how long, what is in it. */
-function element(id: number, ...content: Bytes): Bytes {
+function element(id: number, content: Bytes): Bytes {
   const name = bytes(id, Math.ceil(Math.log2(id + 1) / 8));
   // Eight bytes, the first of which says that there are eight.
   const length = bytes(size(content), 8);
@@ -26,27 +26,27 @@ function element(id: number, ...content: Bytes): Bytes {
   return [name, length, ...content];
 }
 
-const integer = (id: number, value: number) => element(id, bytes(value, 4));
-const words = (id: number, text: string) => element(id, new TextEncoder().encode(text));
+const integer = (id: number, value: number) => element(id, [bytes(value, 4)]);
+const words = (id: number, text: string) => element(id, [new TextEncoder().encode(text)]);
 
 function float(id: number, value: number): Bytes {
   const held = new Uint8Array(8);
   new DataView(held.buffer).setFloat64(0, value);
-  return element(id, held);
+  return element(id, [held]);
 }
 
 /** Pictures from a whole one, at `start`, up to the next; they can be shown without what was before. */
 function cluster(start: number, pictures: Encoded[]): Bytes {
   const blocks = pictures.map(({ time, whole, data }) =>
     // Of track 1, so long after the start.
-    element(0xa3, Uint8Array.of(0x81), bytes(time - start, 2), Uint8Array.of(whole ? 0x80 : 0), data));
-  return element(0x1f43b675, ...integer(0xe7, start), ...blocks.flat());
+    element(0xa3, [Uint8Array.of(0x81), bytes(time - start, 2), Uint8Array.of(whole ? 0x80 : 0), data]));
+  return element(0x1f43b675, [...integer(0xe7, start), ...blocks.flat()]);
 }
 
 /** Where in the file the pictures of a time are. */
 function cue(time: number, position: number): Bytes {
-  const place = element(0xb7, ...integer(0xf7, 1), ...integer(0xf1, position));
-  return element(0xbb, ...integer(0xb3, time), ...place);
+  const place = element(0xb7, [...integer(0xf7, 1), ...integer(0xf1, position)]);
+  return element(0xbb, [...integer(0xb3, time), ...place]);
 }
 
 /** A film.
@@ -56,19 +56,22 @@ function cue(time: number, position: number): Bytes {
  *  * `duration`: ms
  */
 export function webm(pictures: Encoded[], [width, height]: [number, number], duration: number): Blob {
-  const head = element(0x1a45dfa3,
+  const head = element(0x1a45dfa3, [
     ...integer(0x4286, 1), ...integer(0x42f7, 1), ...integer(0x42f2, 4), ...integer(0x42f3, 8),
-    ...words(0x4282, "webm"), ...integer(0x4287, 2), ...integer(0x4285, 2));
-  const info = element(0x1549a966,
+    ...words(0x4282, "webm"), ...integer(0x4287, 2), ...integer(0x4285, 2),
+  ]);
+  const info = element(0x1549a966, [
     // Times in milliseconds.
     ...integer(0x2ad7b1, 1e6), ...float(0x4489, duration),
-    ...words(0x4d80, "windfall"), ...words(0x5741, "windfall"));
-  const video = element(0xe0, ...integer(0xb0, width), ...integer(0xba, height));
-  const track = element(0xae,
+    ...words(0x4d80, "windfall"), ...words(0x5741, "windfall"),
+  ]);
+  const video = element(0xe0, [...integer(0xb0, width), ...integer(0xba, height)]);
+  const track = element(0xae, [
     // Number, identity, video, no lacing.
     ...integer(0xd7, 1), ...integer(0x73c5, 1), ...integer(0x83, 1), ...integer(0x9c, 0),
-    ...words(0x86, "V_VP8"), ...video);
-  const content: Bytes = [...info, ...element(0x1654ae6b, ...track)];
+    ...words(0x86, "V_VP8"), ...video,
+  ]);
+  const content: Bytes = [...info, ...element(0x1654ae6b, track)];
 
   const starts = pictures.flatMap(({ whole, time }, first) => (whole ? [{ time, first }] : []));
   const cues: Bytes = [];
@@ -79,6 +82,5 @@ export function webm(pictures: Encoded[], [width, height]: [number, number], dur
     position += size(own);
     content.push(...own);
   });
-  content.push(...element(0x1c53bb6b, ...cues));
-  return new Blob([...head, ...element(0x18538067, ...content)], { type: "video/webm" });
+  return new Blob([...head, ...element(0x18538067, [...content, ...element(0x1c53bb6b, cues)])], { type: "video/webm" });
 }
